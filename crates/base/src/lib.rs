@@ -1,0 +1,9 @@
+//! What everything else stands on: elementary functions, numerics, units, diagnostics. Layer 0: depends on no other room.
+
+pub mod dense;
+pub mod diagnostics;
+pub mod maths;
+pub mod quadrature;
+pub mod roots;
+pub mod text;
+pub mod units;

@@ -1,0 +1,682 @@
+//! Units at the door: text such as `"1.38 N/mm"` becomes an SI number that remembers the unit it was typed in.
+//!
+//! A unit is a product of powers of known symbols. Besides the SI bases it carries the angle (so that N·m/rad is not N·m) and an
+//! energy mark (so that a torque in N·m is never taken for an energy in J). Decimal prefixes are kept as powers of ten and joined to
+//! the digits before they are read, so `"34.5 mm"` and `"3.45 cm"` give the same bits.
+
+use std::borrow::Cow;
+use std::fmt;
+
+/// Exponents of kg, m, s, A, K, rad and of the energy mark.
+type Exponents = [i8; 7];
+
+const fn exponents(kg: i8, m: i8, s: i8, a: i8, k: i8, rad: i8, energy: i8) -> Exponents {
+    [kg, m, s, a, k, rad, energy]
+}
+
+/// What a quantity is. A closed set: each has one SI unit and one set of exponents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Pure number, or `%`.
+    Ratio,
+    /// Length, m.
+    Length,
+    /// Angle, rad.
+    Angle,
+    /// Force, N.
+    Force,
+    /// Stress, pressure or elastic modulus, Pa.
+    Stress,
+    /// Torque, N·m. Never an energy.
+    Torque,
+    /// Energy or work, J. Never a torque.
+    Energy,
+    /// Force per length, N/m.
+    Stiffness,
+    /// Torque per angle, N·m/rad.
+    RotationalStiffness,
+    /// Mass, kg.
+    Mass,
+    /// Density, kg/m³.
+    Density,
+    /// Moment of inertia, kg·m².
+    Inertia,
+    /// Duration, s.
+    Time,
+    /// Speed, m/s.
+    Speed,
+    /// Angular speed, rad/s.
+    AngularSpeed,
+    /// Acceleration, m/s².
+    Acceleration,
+}
+
+struct DimensionRow {
+    dimension: Dimension,
+    name: &'static str,
+    exponents: Exponents,
+    si: &'static str,
+    example: &'static str,
+    accepted: &'static str,
+}
+
+const DIMENSIONS: &[DimensionRow] = &[
+    row(Dimension::Ratio, "a pure number", exponents(0, 0, 0, 0, 0, 0, 0), "1", "5 %", "%, or a bare number"),
+    row(Dimension::Length, "a length", exponents(0, 1, 0, 0, 0, 0, 0), "m", "16 mm", "µm, mm, cm, m, in"),
+    row(Dimension::Angle, "an angle", exponents(0, 0, 0, 0, 0, 1, 0), "rad", "30 deg", "deg, rad, turn"),
+    row(Dimension::Force, "a force", exponents(1, 1, -2, 0, 0, 0, 0), "N", "9.7 N", "mN, N, kN, kgf, lbf"),
+    row(Dimension::Stress, "a stress or modulus", exponents(1, -1, -2, 0, 0, 0, 0), "Pa", "76 MPa", "Pa, kPa, MPa, GPa, N/mm^2, psi, bar"),
+    row(Dimension::Torque, "a torque", exponents(1, 2, -2, 0, 0, 0, 0), "N*m", "400 N*mm", "N*mm, N*m, kgf*cm, lbf*in"),
+    row(Dimension::Energy, "an energy", exponents(1, 2, -2, 0, 0, 0, 1), "J", "12 mJ", "mJ, J, kJ, Wh"),
+    row(Dimension::Stiffness, "a stiffness", exponents(1, 0, -2, 0, 0, 0, 0), "N/m", "1.38 N/mm", "N/m, N/mm, lbf/in"),
+    row(Dimension::RotationalStiffness, "a rotational stiffness", exponents(1, 2, -2, 0, 0, -1, 0), "N*m/rad", "800 N*m/rad", "N*m/rad, N*mm/deg"),
+    row(Dimension::Mass, "a mass", exponents(1, 0, 0, 0, 0, 0, 0), "kg", "90 g", "mg, g, kg, lb"),
+    row(Dimension::Density, "a density", exponents(1, -3, 0, 0, 0, 0, 0), "kg/m^3", "1410 kg/m^3", "kg/m^3, g/cm^3"),
+    row(Dimension::Inertia, "a moment of inertia", exponents(1, 2, 0, 0, 0, 0, 0), "kg*m^2", "2e-5 kg*m^2", "kg*m^2, g*mm^2"),
+    row(Dimension::Time, "a duration", exponents(0, 0, 1, 0, 0, 0, 0), "s", "0.125 s", "ms, s, min, h"),
+    row(Dimension::Speed, "a speed", exponents(0, 1, -1, 0, 0, 0, 0), "m/s", "20 mm/s", "mm/s, m/s"),
+    row(Dimension::AngularSpeed, "an angular speed", exponents(0, 0, -1, 0, 0, 1, 0), "rad/s", "3000 rpm", "rad/s, deg/s, rpm"),
+    row(Dimension::Acceleration, "an acceleration", exponents(0, 1, -2, 0, 0, 0, 0), "m/s^2", "9.81 m/s^2", "m/s^2, mm/s^2"),
+];
+
+const fn row(
+    dimension: Dimension,
+    name: &'static str,
+    exponents: Exponents,
+    si: &'static str,
+    example: &'static str,
+    accepted: &'static str,
+) -> DimensionRow {
+    DimensionRow { dimension, name, exponents, si, example, accepted }
+}
+
+impl Dimension {
+    fn row(self) -> &'static DimensionRow {
+        // Every variant has a row (tested); the first row is only the compiler's way out.
+        DIMENSIONS.iter().find(|r| r.dimension == self).unwrap_or(&DIMENSIONS[0])
+    }
+
+    /// All dimensions.
+    pub fn all() -> impl Iterator<Item = Self> {
+        DIMENSIONS.iter().map(|r| r.dimension)
+    }
+
+    /// Name with its article, as used in messages: `"a force"`.
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Symbol of the SI unit in which values are held: `"N/m"`; `"1"` for pure numbers.
+    pub fn si_symbol(self) -> &'static str {
+        self.row().si
+    }
+
+    /// An example a user could copy: `"1.38 N/mm"`.
+    pub fn example(self) -> &'static str {
+        self.row().example
+    }
+
+    /// Common units of this dimension, for messages and documentation.
+    pub fn accepted(self) -> &'static str {
+        self.row().accepted
+    }
+
+    /// Dimension of a set of exponents, if it is one of ours.
+    fn of(exponents: Exponents) -> Option<Self> {
+        DIMENSIONS.iter().find(|r| r.exponents == exponents).map(|r| r.dimension)
+    }
+}
+
+/// A unit as typed, with its conversion to SI: `si = value · mantissa · 10^power`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    symbol: Cow<'static, str>,
+    exponents: Exponents,
+    mantissa: f64,
+    power: i32,
+}
+
+/// Why a unit was not understood.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum UnitError {
+    /// A symbol that is no unit; the second field is the nearest known one.
+    Unknown(String, Option<&'static str>),
+    /// Not a product of powers.
+    Syntax(String),
+}
+
+impl fmt::Display for UnitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(symbol, Some(near)) => write!(f, "`{symbol}` is not a unit; did you mean `{near}`?"),
+            Self::Unknown(symbol, None) => write!(f, "`{symbol}` is not a unit"),
+            Self::Syntax(text) => write!(f, "`{text}` is not a unit; write products and quotients such as `N*mm` or `kg/m^3`"),
+        }
+    }
+}
+
+struct Atom {
+    symbol: &'static str,
+    mantissa: f64,
+    power: i32,
+    exponents: Exponents,
+}
+
+const fn atom(symbol: &'static str, mantissa: f64, power: i32, exponents: Exponents) -> Atom {
+    Atom { symbol, mantissa, power, exponents }
+}
+
+const MASS: Exponents = exponents(1, 0, 0, 0, 0, 0, 0);
+const LENGTH: Exponents = exponents(0, 1, 0, 0, 0, 0, 0);
+const TIME: Exponents = exponents(0, 0, 1, 0, 0, 0, 0);
+const ANGLE: Exponents = exponents(0, 0, 0, 0, 0, 1, 0);
+const FORCE: Exponents = exponents(1, 1, -2, 0, 0, 0, 0);
+const STRESS: Exponents = exponents(1, -1, -2, 0, 0, 0, 0);
+const ENERGY: Exponents = exponents(1, 2, -2, 0, 0, 0, 1);
+const POWER: Exponents = exponents(1, 2, -3, 0, 0, 0, 1);
+
+/// Conversion factors: SI brochure (9th ed.) and NIST SP 811 (2008), appendix B; all exact but `deg`, `turn`, `rpm` and `psi`.
+const ATOMS: &[Atom] = &[
+    atom("1", 1.0, 0, [0; 7]),
+    atom("%", 1.0, -2, [0; 7]),
+    atom("m", 1.0, 0, LENGTH),
+    atom("dm", 1.0, -1, LENGTH),
+    atom("cm", 1.0, -2, LENGTH),
+    atom("mm", 1.0, -3, LENGTH),
+    atom("µm", 1.0, -6, LENGTH),
+    atom("um", 1.0, -6, LENGTH),
+    atom("nm", 1.0, -9, LENGTH),
+    atom("km", 1.0, 3, LENGTH),
+    atom("in", 254.0, -4, LENGTH),
+    atom("ft", 3048.0, -4, LENGTH),
+    atom("rad", 1.0, 0, ANGLE),
+    atom("mrad", 1.0, -3, ANGLE),
+    atom("deg", std::f64::consts::PI / 180.0, 0, ANGLE),
+    atom("°", std::f64::consts::PI / 180.0, 0, ANGLE),
+    atom("turn", 2.0 * std::f64::consts::PI, 0, ANGLE),
+    atom("rev", 2.0 * std::f64::consts::PI, 0, ANGLE),
+    atom("rpm", std::f64::consts::PI / 30.0, 0, exponents(0, 0, -1, 0, 0, 1, 0)),
+    atom("kg", 1.0, 0, MASS),
+    atom("g", 1.0, -3, MASS),
+    atom("mg", 1.0, -6, MASS),
+    atom("t", 1.0, 3, MASS),
+    atom("lb", 45_359_237.0, -8, MASS),
+    atom("s", 1.0, 0, TIME),
+    atom("ms", 1.0, -3, TIME),
+    atom("µs", 1.0, -6, TIME),
+    atom("us", 1.0, -6, TIME),
+    atom("min", 60.0, 0, TIME),
+    atom("h", 3600.0, 0, TIME),
+    atom("N", 1.0, 0, FORCE),
+    atom("mN", 1.0, -3, FORCE),
+    atom("µN", 1.0, -6, FORCE),
+    atom("uN", 1.0, -6, FORCE),
+    atom("cN", 1.0, -2, FORCE),
+    atom("daN", 1.0, 1, FORCE),
+    atom("kN", 1.0, 3, FORCE),
+    atom("MN", 1.0, 6, FORCE),
+    atom("kgf", 980_665.0, -5, FORCE),
+    atom("gf", 980_665.0, -8, FORCE),
+    atom("lbf", 44_482_216_152_605.0, -13, FORCE),
+    atom("ozf", 2_780_138_509_537_812.5, -16, FORCE),
+    atom("Pa", 1.0, 0, STRESS),
+    atom("kPa", 1.0, 3, STRESS),
+    atom("MPa", 1.0, 6, STRESS),
+    atom("GPa", 1.0, 9, STRESS),
+    atom("bar", 1.0, 5, STRESS),
+    atom("psi", 6_894.757_293_168_361, 0, STRESS),
+    atom("ksi", 6_894.757_293_168_361, 3, STRESS),
+    atom("J", 1.0, 0, ENERGY),
+    atom("mJ", 1.0, -3, ENERGY),
+    atom("µJ", 1.0, -6, ENERGY),
+    atom("uJ", 1.0, -6, ENERGY),
+    atom("kJ", 1.0, 3, ENERGY),
+    atom("Wh", 3600.0, 0, ENERGY),
+    atom("W", 1.0, 0, POWER),
+    atom("mW", 1.0, -3, POWER),
+    atom("kW", 1.0, 3, POWER),
+    atom("A", 1.0, 0, exponents(0, 0, 0, 1, 0, 0, 0)),
+    atom("mA", 1.0, -3, exponents(0, 0, 0, 1, 0, 0, 0)),
+    atom("K", 1.0, 0, exponents(0, 0, 0, 0, 1, 0, 0)),
+];
+
+impl Unit {
+    /// The SI unit of a dimension.
+    pub fn si(dimension: Dimension) -> Self {
+        let row = dimension.row();
+        Self { symbol: Cow::Borrowed(row.si), exponents: row.exponents, mantissa: 1.0, power: 0 }
+    }
+
+    /// Reads a unit such as `mm`, `N/mm`, `N·mm`, `kg*m^2`, `m/s²`. Empty text is the pure number.
+    ///
+    /// # Errors
+    /// [`UnitError`] for an unknown symbol or a malformed product.
+    pub fn parse(text: &str) -> Result<Self, UnitError> {
+        let symbol = text.trim();
+        let mut unit = Self { symbol: Cow::Owned(symbol.to_owned()), exponents: [0; 7], mantissa: 1.0, power: 0 };
+        if symbol.is_empty() {
+            return Ok(unit);
+        }
+        // U+03BC (Greek mu) is typed as often as U+00B5 (micro sign).
+        let plain = symbol.replace('μ', "µ").replace('²', "^2").replace('³', "^3").replace(['·', '⋅', '×'], "*");
+        let syntax = || UnitError::Syntax(symbol.to_owned());
+        let mut sign = 1_i8;
+        let mut rest = plain.as_str();
+        loop {
+            let end = rest.find(['*', '/']).unwrap_or(rest.len());
+            let factor = rest[..end].trim();
+            let (name, exponent) = match factor.split_once('^') {
+                None => (factor, 1),
+                Some((name, digits)) => (name.trim(), digits.trim().parse::<i8>().map_err(|_| syntax())?),
+            };
+            if name.is_empty() || !(-6..=6).contains(&exponent) {
+                return Err(syntax());
+            }
+            unit.multiply(find_atom(name)?, sign * exponent).ok_or_else(syntax)?;
+            match rest[end..].chars().next() {
+                None => return Ok(unit),
+                Some(operator) => {
+                    // `a/b*c` is read left to right, as in the brochure's `a/b·c` is ambiguous but calculators do.
+                    sign = if operator == '/' { -1 } else { 1 };
+                    rest = &rest[end + 1..];
+                }
+            }
+        }
+    }
+
+    fn multiply(&mut self, atom: &Atom, exponent: i8) -> Option<()> {
+        for (mine, theirs) in self.exponents.iter_mut().zip(atom.exponents) {
+            *mine = mine.checked_add(theirs.checked_mul(exponent)?)?;
+        }
+        self.power = self.power.checked_add(atom.power * i32::from(exponent))?;
+        for _ in 0..exponent.unsigned_abs() {
+            if exponent > 0 {
+                self.mantissa *= atom.mantissa;
+            } else {
+                self.mantissa /= atom.mantissa;
+            }
+        }
+        Some(())
+    }
+
+    /// The unit as typed.
+    pub fn symbol(&self) -> &str {
+        &self.symbol
+    }
+
+    /// The symbol as printed for people: `N·mm`, `m/s²`, nothing for a pure number.
+    pub fn pretty(&self) -> String {
+        match self.symbol.as_ref() {
+            "1" => String::new(),
+            symbol => symbol.replace('*', "·").replace("^2", "²").replace("^3", "³"),
+        }
+    }
+
+    /// The dimension, if it is one that the project file knows.
+    pub fn dimension(&self) -> Option<Dimension> {
+        Dimension::of(self.exponents)
+    }
+
+    /// Whether values in this unit are of the given dimension.
+    pub fn is(&self, dimension: Dimension) -> bool {
+        self.exponents == dimension.row().exponents
+    }
+
+    /// Value in SI of `value` in this unit.
+    pub fn to_si(&self, value: f64) -> f64 {
+        value * self.mantissa * crate::maths::powi(10.0, self.power)
+    }
+
+    /// Value in this unit of an SI value.
+    pub fn from_si(&self, si: f64) -> f64 {
+        // Dividing by an exact power of ten gives the decimal that was typed back; multiplying by its inverse may not.
+        let scaled = si / self.mantissa;
+        if self.power < 0 {
+            scaled * crate::maths::powi(10.0, -self.power)
+        } else {
+            scaled / crate::maths::powi(10.0, self.power)
+        }
+    }
+
+    /// SI value of a decimal in this unit; exact to the last bit when the unit is a power of ten times the SI unit.
+    fn decimal_to_si(&self, digits: &str) -> Option<f64> {
+        let (head, exponent) = match digits.split_once(['e', 'E']) {
+            Some((head, exponent)) => (head, exponent.parse::<i32>().ok()?),
+            None => (digits, 0),
+        };
+        let si = format!("{head}e{}", exponent.checked_add(self.power)?).parse::<f64>().ok()?;
+        Some(if self.mantissa.to_bits() == 1.0_f64.to_bits() { si } else { si * self.mantissa })
+    }
+}
+
+fn find_atom(name: &str) -> Result<&'static Atom, UnitError> {
+    ATOMS.iter().find(|a| a.symbol == name).ok_or_else(|| {
+        let near = crate::text::closest(name, ATOMS.iter().map(|a| a.symbol).filter(|s| *s != "1"));
+        UnitError::Unknown(name.to_owned(), near)
+    })
+}
+
+/// How far a made value may lie from the typed one.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Tolerance {
+    /// `±`: half width in SI units.
+    Symmetric(f64),
+    /// ISO 286 fit on a diameter, such as `h7`: letter(s) and grade.
+    Fit {
+        /// Fundamental deviation: upper case for holes, lower case for shafts.
+        letters: String,
+        /// Standard tolerance grade, 1 to 18.
+        grade: u8,
+    },
+}
+
+/// A number with the unit and tolerance it was typed with. SI inside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Value in SI.
+    pub si: f64,
+    /// The unit typed; results of this quantity are printed in it.
+    pub unit: Unit,
+    /// The tolerance typed, if any.
+    pub tolerance: Option<Tolerance>,
+}
+
+/// Why a text is not a quantity of the dimension asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum QuantityError {
+    /// Empty text, or text that does not start with a number.
+    NotANumber,
+    /// `nan`, `inf`, or too large for a double.
+    NotFinite,
+    /// A decimal comma; the field is the text with a point.
+    DecimalComma(String),
+    /// A number without unit where one is needed.
+    NoUnit,
+    /// See [`UnitError`].
+    Unit(UnitError),
+    /// A known unit of another dimension, named if it is one of ours.
+    WrongDimension(String, Option<Dimension>),
+    /// The part after `±` is not a positive quantity of the same dimension.
+    Tolerance(String),
+}
+
+impl Quantity {
+    /// A value in its SI unit, without tolerance.
+    pub fn from_si(si: f64, dimension: Dimension) -> Self {
+        Self { si, unit: Unit::si(dimension), tolerance: None }
+    }
+
+    /// Reads `"0.85 mm"`, `"0.85 mm ± 0.02 mm"`, `"0.85 ± 0.02 mm"`, `"17.6 mm h7"`, `"5 %"`, `"0.12 +/- 0.03"`.
+    ///
+    /// # Errors
+    /// [`QuantityError`] says what is wrong; the caller knows the place.
+    pub fn parse(text: &str, dimension: Dimension) -> Result<Self, QuantityError> {
+        let normal = text.trim().replace('−', "-").replace("+/-", "±").replace("+-", "±");
+        let Some((nominal, deviation)) = normal.split_once('±') else {
+            return Self::parse_nominal(&normal, dimension);
+        };
+        let (tolerance_digits, tolerance_unit) = split_number(deviation.trim()).map_err(|_| tolerance_error(deviation))?;
+        let (digits, unit_text) = split_number(nominal.trim())?;
+        // `0.85 ± 0.02 mm`: the unit is written once, for both.
+        let shared = unit_text.is_empty() && !tolerance_unit.is_empty() && tolerance_unit != "%";
+        let mut quantity =
+            if shared { Self::build(digits, tolerance_unit, dimension)? } else { Self::build(digits, unit_text, dimension)? };
+        let half = if tolerance_unit == "%" && unit_text != "%" {
+            tolerance_digits.parse::<f64>().map_err(|_| tolerance_error(deviation))? / 100.0 * quantity.si.abs()
+        } else if tolerance_unit.is_empty() {
+            quantity.unit.decimal_to_si(tolerance_digits).ok_or_else(|| tolerance_error(deviation))?
+        } else {
+            Self::build(tolerance_digits, tolerance_unit, dimension).map_err(|_| tolerance_error(deviation))?.si
+        };
+        if !(half > 0.0 && half.is_finite()) {
+            return Err(tolerance_error(deviation));
+        }
+        quantity.tolerance = Some(Tolerance::Symmetric(half));
+        Ok(quantity)
+    }
+
+    fn parse_nominal(text: &str, dimension: Dimension) -> Result<Self, QuantityError> {
+        let (digits, unit_text) = split_number(text)?;
+        if dimension == Dimension::Length
+            && let Some((unit, fit)) = unit_text.rsplit_once(char::is_whitespace)
+            && let Some(tolerance) = parse_fit(fit)
+        {
+            let mut quantity = Self::build(digits, unit, dimension)?;
+            quantity.tolerance = Some(tolerance);
+            return Ok(quantity);
+        }
+        Self::build(digits, unit_text, dimension)
+    }
+
+    fn build(digits: &str, unit_text: &str, dimension: Dimension) -> Result<Self, QuantityError> {
+        let unit = Unit::parse(unit_text).map_err(QuantityError::Unit)?;
+        if !unit.is(dimension) {
+            return Err(if unit_text.is_empty() {
+                QuantityError::NoUnit
+            } else {
+                QuantityError::WrongDimension(unit_text.to_owned(), unit.dimension())
+            });
+        }
+        let si = unit.decimal_to_si(digits).ok_or(QuantityError::NotANumber)?;
+        if !si.is_finite() {
+            return Err(QuantityError::NotFinite);
+        }
+        Ok(Self { si, unit, tolerance: None })
+    }
+
+    /// The value in the unit typed, without unit.
+    pub fn value(&self) -> f64 {
+        self.unit.from_si(self.si)
+    }
+
+    /// Half width of a `±` tolerance in SI, if there is one.
+    pub fn half_width_si(&self) -> Option<f64> {
+        match self.tolerance {
+            Some(Tolerance::Symmetric(half)) => Some(half),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Quantity {
+    /// As typed: value, unit, tolerance.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&format_si(self.si, &self.unit, 12))?;
+        match &self.tolerance {
+            None => Ok(()),
+            Some(Tolerance::Symmetric(half)) => write!(f, " ± {}", format_si(*half, &self.unit, 12)),
+            Some(Tolerance::Fit { letters, grade }) => write!(f, " {letters}{grade}"),
+        }
+    }
+}
+
+fn tolerance_error(text: &str) -> QuantityError {
+    QuantityError::Tolerance(text.trim().to_owned())
+}
+
+/// `h7`, `H7`, `js6`: letters and grade 1 to 18.
+fn parse_fit(text: &str) -> Option<Tolerance> {
+    let digits = text.find(|c: char| c.is_ascii_digit())?;
+    let (letters, grade) = text.split_at(digits);
+    let grade = grade.parse::<u8>().ok().filter(|g| (1..=18).contains(g))?;
+    let known = (1..=2).contains(&letters.len()) && letters.chars().all(|c| c.is_ascii_alphabetic());
+    known.then(|| Tolerance::Fit { letters: letters.to_owned(), grade })
+}
+
+/// Splits leading decimal digits from the unit that follows.
+fn split_number(text: &str) -> Result<(&str, &str), QuantityError> {
+    let bytes = text.as_bytes();
+    let mut at = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+    let whole = digits(at);
+    at += whole;
+    let mut fraction = 0;
+    if bytes.get(at) == Some(&b'.') {
+        fraction = digits(at + 1);
+        at += 1 + fraction;
+    }
+    if whole + fraction == 0 {
+        let word = text.trim_start_matches(['+', '-']).to_ascii_lowercase();
+        let infinite = word.starts_with("nan") || word.starts_with("inf");
+        return Err(if infinite { QuantityError::NotFinite } else { QuantityError::NotANumber });
+    }
+    if matches!(bytes.get(at), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(at + 1), Some(b'+' | b'-')));
+        let exponent = digits(at + 1 + sign);
+        if exponent > 0 {
+            at += 1 + sign + exponent;
+        }
+    }
+    if bytes.get(at) == Some(&b',') && bytes.get(at + 1).is_some_and(u8::is_ascii_digit) {
+        return Err(QuantityError::DecimalComma(text.replacen(',', ".", 1)));
+    }
+    Ok((&text[..at], text[at..].trim()))
+}
+
+/// A value for people: in the given unit, with at most `digits` significant digits, no trailing zeros.
+pub fn format_si(si: f64, unit: &Unit, digits: usize) -> String {
+    let number = format_number(unit.from_si(si), digits);
+    match unit.pretty() {
+        symbol if symbol.is_empty() => number,
+        symbol => format!("{number} {symbol}"),
+    }
+}
+
+/// A number for people: at most `digits` significant digits, no trailing zeros, exponent form outside 1e-4…1e7, a true minus sign is
+/// not used so that numbers can be copied.
+pub fn format_number(value: f64, digits: usize) -> String {
+    if value.abs() == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return if value.is_nan() { "not a number".to_owned() } else { format!("{value}") };
+    }
+    let digits = digits.clamp(1, 17);
+    // Round first: 9.9996 with four digits has one more place before the point.
+    let scientific = format!("{value:.*e}", digits - 1);
+    let (head, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent = exponent.parse::<i32>().unwrap_or(0);
+    let trim = |text: &str| {
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text.to_owned() }
+    };
+    if !(-4..7).contains(&exponent) {
+        return format!("{}e{exponent}", trim(head));
+    }
+    let decimals = usize::try_from(i32::try_from(digits).unwrap_or(17) - 1 - exponent).unwrap_or(0);
+    trim(&format!("{value:.decimals$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn length(text: &str) -> Quantity {
+        Quantity::parse(text, Dimension::Length).unwrap()
+    }
+
+    #[test]
+    fn every_dimension_has_a_row_and_its_example_reads() {
+        for dimension in Dimension::all() {
+            assert_eq!(dimension.row().dimension, dimension);
+            let example = Quantity::parse(dimension.example(), dimension).unwrap();
+            assert!(example.si.is_finite());
+            assert!(Unit::parse(dimension.si_symbol()).unwrap().is(dimension), "{dimension:?}");
+        }
+    }
+
+    #[test]
+    fn exact_conversions_from_the_standards() {
+        for (text, dimension, si) in [
+            ("1 in", Dimension::Length, 0.0254),
+            ("1 lbf", Dimension::Force, 4.448_221_615_260_5),
+            ("1 kgf", Dimension::Force, 9.806_65),
+            ("1 lb", Dimension::Mass, 0.453_592_37),
+            ("1 psi", Dimension::Stress, 6_894.757_293_168_361),
+            ("1 N/mm^2", Dimension::Stress, 1e6),
+            ("1 Wh", Dimension::Energy, 3600.0),
+            ("1 g*mm^2", Dimension::Inertia, 1e-9),
+            ("1 g/cm^3", Dimension::Density, 1000.0),
+            ("60 rpm", Dimension::AngularSpeed, 2.0 * std::f64::consts::PI),
+            ("180 deg", Dimension::Angle, std::f64::consts::PI),
+            ("5 %", Dimension::Ratio, 0.05),
+            ("1 N·mm", Dimension::Torque, 1e-3),
+            ("1 μm", Dimension::Length, 1e-6),
+        ] {
+            let got = Quantity::parse(text, dimension).unwrap().si;
+            assert!((got - si).abs() <= 4.0 * f64::EPSILON * si, "{text}: {got} is not {si}");
+        }
+    }
+
+    #[test]
+    fn decimal_units_give_the_same_bits() {
+        for (a, b) in [("34.497 mm", "3.4497 cm"), ("0.85 mm", "850 µm"), ("18.77 mm", "1877e-5 m"), ("1e-3 m", "1 mm")] {
+            assert_eq!(length(a).si.to_bits(), length(b).si.to_bits(), "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn torque_is_not_energy() {
+        assert!(Quantity::parse("1 J", Dimension::Torque).is_err());
+        assert!(Quantity::parse("1 N*m", Dimension::Energy).is_err());
+        assert_eq!(
+            Quantity::parse("400 N", Dimension::Torque),
+            Err(QuantityError::WrongDimension("N".to_owned(), Some(Dimension::Force)))
+        );
+    }
+
+    #[test]
+    fn tolerances_in_every_spelling() {
+        for text in ["0.85 mm ± 0.02 mm", "0.85 mm +/- 0.02 mm", "0.85 ± 0.02 mm", "0.85 mm ± 20 µm", "0.85mm±0.02mm", "0.85 mm ± 0.02"] {
+            let q = length(text);
+            assert!((q.si - 0.85e-3).abs() < 1e-18 && (q.half_width_si().unwrap() - 2e-5).abs() < 1e-18, "{text}");
+        }
+        assert!((length("2 mm ± 5 %").half_width_si().unwrap() - 1e-4).abs() < 1e-18);
+        let ratio = Quantity::parse("0.12 ± 0.03", Dimension::Ratio).unwrap();
+        assert!((ratio.half_width_si().unwrap() - 0.03).abs() < 1e-15);
+        assert_eq!(length("17.6 mm h7").tolerance, Some(Tolerance::Fit { letters: "h".to_owned(), grade: 7 }));
+        assert!(Quantity::parse("1 mm ± -2 mm", Dimension::Length).is_err());
+        assert!(Quantity::parse("1 mm ± 2 N", Dimension::Length).is_err());
+    }
+
+    #[test]
+    fn what_is_typed_is_printed() {
+        for text in ["0.85 mm ± 0.02 mm", "34.497 mm", "3.4497 cm", "17.6 mm h7", "1.3 in"] {
+            assert_eq!(length(text).to_string(), text);
+        }
+        assert_eq!(Quantity::parse("2 GPa", Dimension::Stress).unwrap().to_string(), "2 GPa");
+        assert_eq!(Quantity::parse("400 N*mm", Dimension::Torque).unwrap().to_string(), "400 N·mm");
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        use QuantityError::{DecimalComma, NoUnit, NotANumber, NotFinite};
+        let error = |text| Quantity::parse(text, Dimension::Length).unwrap_err();
+        assert_eq!(error(""), NotANumber);
+        assert_eq!(error("mm"), NotANumber);
+        assert_eq!(error("nan mm"), NotFinite);
+        assert_eq!(error("-inf mm"), NotFinite);
+        assert_eq!(error("1e400 mm"), NotFinite);
+        assert_eq!(error("12,5 mm"), DecimalComma("12.5 mm".to_owned()));
+        assert_eq!(error("16"), NoUnit);
+        assert_eq!(error("16 mmm"), QuantityError::Unit(UnitError::Unknown("mmm".to_owned(), Some("mm"))));
+        for text in ["1 m^", "1 m^99", "1 /", "1 m//s", "1e99999999999999999999 m", "1 m*", "1 ^2", "±", "1 ± ", "١ mm"] {
+            assert!(Quantity::parse(text, Dimension::Length).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_for_people() {
+        for (value, digits, text) in [
+            (9.9996, 4, "10"),
+            (48.222_896, 4, "48.22"),
+            (0.000_123_456, 3, "0.000123"),
+            (1.234e-7, 3, "1.23e-7"),
+            (-0.020_09, 3, "-0.0201"),
+            (123_456.0, 3, "123456"),
+            (2e9, 3, "2e9"),
+            (0.0, 3, "0"),
+        ] {
+            assert_eq!(format_number(value, digits), text);
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Pure data between the mechanisms that compute and the outputs that draw and write. Layer 1: values are SI, each with the unit in
+//! which people are shown it.
+
+mod check;
+mod curve;
+mod figure;
+mod outcome;
+mod report;
+mod scene;
+
+pub use check::{Check, CheckState, Sense};
+pub use curve::{Axis, Branch, Curve};
+pub use figure::{Figure, FigureContent, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan};
+pub use outcome::{Counter, Metric, Outcome, Status, StatusKind, Warning};
+pub use report::{Citation, ParameterRow, Report, Statement};
+pub use scene::{ColourScale, Item, Role, Scene, SupportKind};
