@@ -1,1 +1,12 @@
-//! (being written)
+//! The contract between mechanism families and everything else. Layer 2: the project file (tree, merging, reading, schema) and the
+//! traits that a family implements.
+
+pub mod codes;
+pub mod describe;
+pub mod family;
+pub mod header;
+pub mod paths;
+pub mod project;
+pub mod read;
+pub mod schema;
+pub mod tree;

@@ -1,1 +1,3 @@
-//! (being written)
+//! Machine elements: what designs are made of. So far the material catalogue.
+
+pub mod materials;

@@ -1,0 +1,183 @@
+//! What a family of mechanisms provides: typed inside ([`Mechanism`]), erased at the edge ([`Family`]).
+
+use std::marker::PhantomData;
+
+use forcewright_base::diagnostics::{Diagnostics, Explanation};
+use forcewright_model::{Figure, Outcome, ParameterRow, Statement};
+
+use crate::describe::Describe;
+use crate::project::Project;
+use crate::{paths, read, schema};
+
+/// Called with the finished fraction of the work; returns whether to go on.
+pub type Progress<'a> = &'a mut dyn FnMut(f64) -> bool;
+
+/// A family, for the people who write one.
+pub trait Mechanism: Sync + 'static {
+    /// The project file as typed: slots with units, places and origins.
+    type Spec: Describe + Default;
+    /// The same resolved: plain SI numbers, references checked, catalogue values in place.
+    type Design;
+
+    /// Name in project files: `compliant`.
+    const ID: &'static str;
+    /// Name for people.
+    const TITLE: &'static str;
+
+    /// Turns what was typed into a design. Whatever is wrong goes into `diagnostics`; `None` if it cannot be built. Values taken from a
+    /// catalogue are written into the specification with their origin, so that reports can tell.
+    fn resolve(spec: &mut Self::Spec, diagnostics: &mut Diagnostics) -> Option<Self::Design>;
+
+    /// Analyses a design. A pure function of it; a solver's failure is in the outcome's status.
+    fn analyse(design: &Self::Design, progress: Progress<'_>) -> Analysis;
+
+    /// Codes of this family: its errors and its checks.
+    fn explanations() -> &'static [Explanation];
+
+    /// The papers whose numbers this family reproduces.
+    fn reproductions() -> &'static [Reproduction];
+}
+
+/// What a family computes from a design.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    /// Status, metrics, checks, curves.
+    pub outcome: Outcome,
+    /// Figures for the report.
+    pub figures: Vec<Figure>,
+    /// Which equations were solved and how.
+    pub model: Vec<Statement>,
+    /// What is not modelled.
+    pub limits: Vec<Statement>,
+}
+
+/// A paper's numbers beside ours.
+#[derive(Clone, Copy)]
+pub struct Reproduction {
+    /// Key in the bibliography: `lan2010`.
+    pub key: &'static str,
+    /// The paper, in words.
+    pub title: &'static str,
+    /// Computes every row anew.
+    pub run: fn(Progress<'_>) -> Vec<ReproductionRow>,
+}
+
+/// One number of a paper.
+#[derive(Clone, Debug)]
+pub struct ReproductionRow {
+    /// The quantity, with its unit.
+    pub quantity: String,
+    /// Table, figure or equation of the paper.
+    pub place: String,
+    /// As printed; empty where the paper prints none.
+    pub paper: Option<f64>,
+    /// As computed in this run.
+    pub ours: f64,
+    /// Unit of both.
+    pub unit: String,
+    /// Largest difference that the printed digits, or the stated reason, explain: absolute, in the unit.
+    pub explained: Option<f64>,
+    /// Why they differ, or why the paper's number is not reached.
+    pub why: String,
+}
+
+impl ReproductionRow {
+    /// Whether the difference is no larger than what is explained.
+    pub fn agrees(&self) -> Option<bool> {
+        Some((self.ours - self.paper?).abs() <= self.explained?)
+    }
+}
+
+/// A family, for programs that know none in particular.
+pub trait Family: Sync {
+    /// Name in project files.
+    fn id(&self) -> &'static str;
+    /// Name for people.
+    fn title(&self) -> &'static str;
+    /// JSON schema of its project files.
+    fn json_schema(&self) -> serde_json::Value;
+    /// Table of its parameters in Markdown.
+    fn parameter_table(&self) -> String;
+    /// Paths of its parameters, members as `*`.
+    fn parameter_paths(&self) -> Vec<String>;
+    /// Understands a project. Everything wrong is added to its diagnostics; `None` if it cannot be used.
+    fn understand(&self, project: &mut Project) -> Option<Box<dyn Understood>>;
+    /// Codes of this family.
+    fn explanations(&self) -> &'static [Explanation];
+    /// The papers whose numbers it reproduces.
+    fn reproductions(&self) -> &'static [Reproduction];
+}
+
+/// A project that was understood: ready to be solved.
+pub trait Understood {
+    /// Analyses it.
+    fn analyse(&self, progress: Progress<'_>) -> Analysis;
+    /// Its parameters as typed.
+    fn parameters(&self) -> Vec<ParameterRow>;
+}
+
+/// Makes a [`Family`] of a [`Mechanism`].
+pub struct Entry<M>(PhantomData<fn() -> M>);
+
+impl<M> Entry<M> {
+    /// The entry of a family's list.
+    #[allow(clippy::new_without_default, reason = "only ever written in a constant list")]
+    pub const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+struct Ready<M: Mechanism> {
+    design: M::Design,
+    parameters: Vec<ParameterRow>,
+}
+
+impl<M: Mechanism> Understood for Ready<M> {
+    fn analyse(&self, progress: Progress<'_>) -> Analysis {
+        M::analyse(&self.design, progress)
+    }
+
+    fn parameters(&self) -> Vec<ParameterRow> {
+        self.parameters.clone()
+    }
+}
+
+impl<M: Mechanism> Family for Entry<M> {
+    fn id(&self) -> &'static str {
+        M::ID
+    }
+
+    fn title(&self) -> &'static str {
+        M::TITLE
+    }
+
+    fn json_schema(&self) -> serde_json::Value {
+        schema::json_schema(M::ID, M::TITLE, &mut M::Spec::default())
+    }
+
+    fn parameter_table(&self) -> String {
+        schema::markdown(&mut M::Spec::default())
+    }
+
+    fn parameter_paths(&self) -> Vec<String> {
+        paths::keys_of(&mut M::Spec::default())
+    }
+
+    fn understand(&self, project: &mut Project) -> Option<Box<dyn Understood>> {
+        let mut spec: M::Spec = read::read(&project.tree, project.root, &mut project.diagnostics);
+        let design = M::resolve(&mut spec, &mut project.diagnostics);
+        if project.diagnostics.has_errors() {
+            return None;
+        }
+        let parameters = paths::rows_of(&mut spec);
+        Some(Box::new(Ready::<M> { design: design?, parameters }))
+    }
+
+    fn explanations(&self) -> &'static [Explanation] {
+        M::explanations()
+    }
+
+    fn reproductions(&self) -> &'static [Reproduction] {
+        M::reproductions()
+    }
+}

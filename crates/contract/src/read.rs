@@ -1,0 +1,436 @@
+//! The reader: a visitor that fills slots from the tree of a project file and reports everything that is wrong with it.
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
+use forcewright_base::text::closest;
+use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit, format_si};
+
+use crate::describe::{Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word};
+use crate::paths;
+use crate::tree::{Entry, Item, Table, Value};
+
+/// Most members of a collection, and most numbers of a list: far above any mechanism, far below what exhausts a machine.
+const MOST_MEMBERS: usize = 500;
+const MOST_NUMBERS: usize = 32;
+
+/// Fills a description from a tree. `root` is the place reported for what is missing from the file as a whole.
+pub fn read<T: Describe + Default>(table: &Table, root: Span, diagnostics: &mut Diagnostics) -> T {
+    let mut target = T::default();
+    let mut unknown = Vec::new();
+    let mut reader = Reader { table, place: root, known: Vec::new(), reserved: Vec::new(), diagnostics, unknown: &mut unknown };
+    target.describe(&mut reader);
+    reader.finish();
+    if !unknown.is_empty() {
+        report_unknown::<T>(unknown, diagnostics);
+    }
+    target
+}
+
+/// A key that no description knows, with the keys that its table knows.
+struct Unknown {
+    key: String,
+    span: Span,
+    siblings: Vec<&'static str>,
+}
+
+/// Suggests the nearest key of the same table, else a table that has such a key.
+fn report_unknown<T: Describe + Default>(unknown: Vec<Unknown>, diagnostics: &mut Diagnostics) {
+    let all = paths::keys_of(&mut T::default());
+    for Unknown { key, span, siblings } in unknown {
+        let help = if let Some(near) = closest(&key, siblings.iter().copied()) {
+            format!("did you mean `{near}`?")
+        } else if let Some(path) = all.iter().find(|p| p.rsplit('.').next() == Some(key.as_str())) {
+            format!("this key belongs elsewhere: `{path}`")
+        } else {
+            format!("known here: {}", siblings.join(", "))
+        };
+        diagnostics.push(Diagnostic::error("E0301", span, format!("unknown key `{}`", shorten(&key))).label("not known here").help(help));
+    }
+}
+
+fn shorten(text: &str) -> String {
+    if text.chars().count() <= 60 { text.to_owned() } else { format!("{}…", text.chars().take(60).collect::<String>()) }
+}
+
+struct Reader<'a> {
+    table: &'a Table,
+    place: Span,
+    known: Vec<&'static str>,
+    reserved: Vec<&'static Reserved>,
+    diagnostics: &'a mut Diagnostics,
+    unknown: &'a mut Vec<Unknown>,
+}
+
+impl<'a> Reader<'a> {
+    fn push(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Marks a key as known, and returns its entry; reports it where it is required and missing.
+    fn entry(&mut self, param: &Param) -> Option<&'a Entry> {
+        self.known.push(param.key);
+        let entry = self.table.get(param.key);
+        if entry.is_none() && param.required {
+            // A misspelt key is reported once, as unknown; calling it missing too would say the same twice.
+            let misspelt = self.table.entries.iter().any(|e| closest(&e.key, [param.key]).is_some());
+            if !misspelt {
+                let example = if param.dimension == Dimension::Ratio { String::new() } else { format!(", such as `{} = \"{}\"`", param.key, param.dimension.example()) };
+                self.push(
+                    Diagnostic::error("E0302", self.place, format!("`{}` is missing", param.key))
+                        .label("from this table")
+                        .help(format!("add it{example}: {}", lower_first(param.doc))),
+                );
+            }
+        }
+        entry
+    }
+
+    /// The default as an item, for the parsers of values.
+    fn default_item(&self, param: &Param) -> Option<Item> {
+        let text = param.default?;
+        let value = text.parse::<f64>().map_or_else(|_| Value::Text(text.to_owned()), Value::Number);
+        Some(Item { span: self.place, value })
+    }
+
+    fn fill<T>(&mut self, param: &Param, slot: &mut Slot<T>, parse: impl Fn(&Item) -> Result<T, Box<Diagnostic>>) {
+        let (item, origin) = match self.entry(param) {
+            Some(entry) => (entry.item.clone(), Origin::File),
+            None => match self.default_item(param) {
+                Some(item) => (item, Origin::Default),
+                None => return,
+            },
+        };
+        match parse(&item) {
+            Ok(value) => *slot = Some(Located { value, span: item.span, origin }),
+            Err(diagnostic) => self.push(*diagnostic),
+        }
+    }
+
+    fn enter<'b>(&'b mut self, table: &'b Table, place: Span) -> Reader<'b> {
+        Reader { table, place, known: Vec::new(), reserved: Vec::new(), diagnostics: self.diagnostics, unknown: self.unknown }
+    }
+
+    /// Reports what nobody asked for.
+    fn finish(self) {
+        for entry in &self.table.entries {
+            if self.known.contains(&entry.key.as_str()) {
+                continue;
+            }
+            match self.reserved.iter().find(|r| r.key == entry.key) {
+                Some(reserved) if reserved.ignored => self.diagnostics.push(
+                    Diagnostic::warning("W0101", entry.key_span, format!("`{}` is not used by this version", reserved.key))
+                        .label("ignored")
+                        .help(reserved.instead),
+                ),
+                Some(reserved) => self.diagnostics.push(
+                    Diagnostic::error("E0306", entry.key_span, format!("`{}` is part of the language but not of this version", reserved.key))
+                        .label("not available yet")
+                        .help(reserved.instead),
+                ),
+                None => self.unknown.push(Unknown { key: entry.key.clone(), span: entry.key_span, siblings: self.known.clone() }),
+            }
+        }
+    }
+}
+
+fn lower_first(text: &str) -> String {
+    let mut chars = text.chars();
+    match (chars.next(), chars.clone().next()) {
+        // Symbols and acronyms keep their capitals.
+        (Some(first), Some(second)) if second.is_lowercase() => first.to_lowercase().chain(chars).collect(),
+        _ => text.to_owned(),
+    }
+}
+
+fn wrong_type(item: &Item, wanted: &str, example: &str) -> Box<Diagnostic> {
+    Box::new(
+        Diagnostic::error("E0206", item.span, format!("expected {wanted}, found {}", item.value.kind()))
+            .label(format!("expected {wanted}"))
+            .help(format!("write it as {example}")),
+    )
+}
+
+fn quantity_of(param: &Param, item: &Item) -> Result<Quantity, Box<Diagnostic>> {
+    let dimension = param.dimension;
+    let quantity = match &item.value {
+        Value::Text(text) => Quantity::parse(text, dimension).map_err(|e| Box::new(quantity_error(&e, text, item.span, dimension)))?,
+        Value::Number(value) if dimension == Dimension::Ratio => Quantity::from_si(*value, dimension),
+        Value::Number(value) => {
+            return Err(Box::new(
+                Diagnostic::error("E0208", item.span, format!("`{}` needs a unit", param.key))
+                    .label(format!("expected {}", dimension.name()))
+                    .help(format!("write it with its unit and in quotes: \"{value} {}\" ({})", default_unit(dimension), dimension.accepted())),
+            ));
+        }
+        _ => return Err(wrong_type(item, dimension.name(), &format!("a text such as \"{}\"", dimension.example()))),
+    };
+    check_range(param, quantity.si, &quantity.unit, item.span)?;
+    Ok(quantity)
+}
+
+/// The unit an engineer would most likely have meant.
+fn default_unit(dimension: Dimension) -> &'static str {
+    dimension.example().split_once(' ').map_or("", |(_, unit)| unit)
+}
+
+fn quantity_error(error: &QuantityError, text: &str, span: Span, dimension: Dimension) -> Diagnostic {
+    let example = format!("write {} such as \"{}\" ({})", dimension.name(), dimension.example(), dimension.accepted());
+    let at = |code, message: String, label: String| Diagnostic::error(code, span, message).label(label);
+    let shown = shorten(text);
+    match error {
+        QuantityError::NotANumber => at("E0202", format!("`{shown}` does not start with a number"), format!("expected {}", dimension.name())).help(example),
+        QuantityError::NotFinite => at("E0205", format!("`{shown}` is not a finite number"), "not a number that can be computed with".to_owned()).help(example),
+        QuantityError::DecimalComma(point) => at("E0202", "decimal comma in a number".to_owned(), "a comma".to_owned()).help(format!("write \"{}\"", shorten(point))),
+        QuantityError::NoUnit => at("E0208", format!("`{shown}` has no unit"), format!("expected {}", dimension.name()))
+            .help(format!("write \"{} {}\" ({})", shown.trim(), default_unit(dimension), dimension.accepted())),
+        QuantityError::Unit(unit) => at("E0203", unit.to_string(), format!("expected {}", dimension.name())).help(example),
+        QuantityError::WrongDimension(unit, found) => at(
+            "E0201",
+            found.map_or_else(|| format!("`{unit}` is no unit of {}", dimension.name()), |f| format!("`{unit}` is the unit of {}, not of {}", f.name(), dimension.name())),
+            format!("expected {}", dimension.name()),
+        )
+        .help(example),
+        QuantityError::Tolerance(part) => at("E0207", format!("`{}` is not a tolerance", shorten(part)), "after the ±".to_owned())
+            .help(format!("write a positive half width: \"{} ± 0.02 {}\", or \"± 2 %\"", dimension.example(), default_unit(dimension))),
+    }
+}
+
+fn check_range(param: &Param, si: f64, unit: &Unit, span: Span) -> Result<(), Box<Diagnostic>> {
+    let range = param.range;
+    if range.holds(si) {
+        return Ok(());
+    }
+    let show = |value: f64| format_si(value, unit, 6);
+    let least = if range.above { format!("above {}", show(range.min)) } else { format!("at least {}", show(range.min)) };
+    let rule = match (range.min.is_finite(), range.max.is_finite()) {
+        (true, true) => format!("{least} and at most {}", show(range.max)),
+        (true, false) => least,
+        (false, _) => format!("at most {}", show(range.max)),
+    };
+    Err(Box::new(
+        Diagnostic::error("E0204", span, format!("`{}` is {}, but must be {rule}", param.key, show(si)))
+            .label("out of range")
+            .help(format!("{}: choose a value {rule}", param.doc.trim_end_matches('.'))),
+    ))
+}
+
+fn bare_number(param: &Param, item: &Item) -> Result<f64, Box<Diagnostic>> {
+    match item.value {
+        Value::Number(value) => check_range(param, value, &Unit::si(Dimension::Ratio), item.span).map(|()| value),
+        _ => Err(wrong_type(item, "a bare number", "a number without quotes and unit, such as 1.25")),
+    }
+}
+
+fn list_of<'i>(item: &'i Item, wanted: &str, example: &str) -> Result<&'i [Item], Box<Diagnostic>> {
+    match &item.value {
+        Value::List(items) => Ok(items),
+        _ => Err(wrong_type(item, wanted, example)),
+    }
+}
+
+fn wrong_length(item: &Item, wanted: &str, found: usize) -> Box<Diagnostic> {
+    Box::new(Diagnostic::error("E0311", item.span, format!("expected {wanted}, found {found}")).label("wrong number of entries").help(format!("give {wanted}")))
+}
+
+impl Visitor for Reader<'_> {
+    fn quantity(&mut self, param: &Param, slot: &mut Slot<Quantity>) {
+        self.fill(param, slot, |item| quantity_of(param, item));
+    }
+
+    fn count(&mut self, param: &Param, slot: &mut Slot<u32>) {
+        self.fill(param, slot, |item| {
+            let value = bare_number(param, item)?;
+            if value.fract().abs() > 0.0 || !(0.0..=1e9).contains(&value) {
+                return Err(wrong_type(item, "a whole number", "a whole number without unit, such as 2"));
+            }
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and in range, checked above")]
+            let count = value as u32;
+            Ok(count)
+        });
+    }
+
+    fn numbers(&mut self, param: &Param, slot: &mut Slot<Vec<f64>>) {
+        self.fill(param, slot, |item| {
+            let items = list_of(item, "a list of numbers", "numbers in brackets, such as [1.3, -1.6]")?;
+            if items.len() > MOST_NUMBERS {
+                return Err(wrong_length(item, &format!("at most {MOST_NUMBERS} numbers"), items.len()));
+            }
+            items.iter().map(|i| bare_number(param, i)).collect()
+        });
+    }
+
+    fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>) {
+        self.fill(param, slot, |item| {
+            let example = format!("two texts in brackets, such as [\"{0}\", \"{0}\"]", param.dimension.example());
+            match list_of(item, "a point [x, y]", &example)? {
+                [x, y] => Ok([quantity_of(param, x)?, quantity_of(param, y)?]),
+                items => Err(wrong_length(item, "two coordinates", items.len())),
+            }
+        });
+    }
+
+    fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>) {
+        self.fill(param, slot, |item| match list_of(item, "a direction [x, y]", "two numbers in brackets, such as [0, -1]")? {
+            [x, y] => {
+                let direction = [bare_number(param, x)?, bare_number(param, y)?];
+                let size = direction[0].abs().max(direction[1].abs());
+                if !(1e-6..=1e6).contains(&size) {
+                    return Err(Box::new(
+                        Diagnostic::error("E0204", item.span, "a direction needs a length").label("out of range").help("write a vector such as [0, -1]; its length does not matter"),
+                    ));
+                }
+                Ok(direction)
+            }
+            items => Err(wrong_length(item, "two components", items.len())),
+        });
+    }
+
+    fn text(&mut self, param: &Param, slot: &mut Slot<String>) {
+        self.fill(param, slot, |item| match &item.value {
+            Value::Text(text) => Ok(text.clone()),
+            _ => Err(wrong_type(item, "a text", "a text in quotes")),
+        });
+    }
+
+    fn flag(&mut self, param: &Param, slot: &mut Slot<bool>) {
+        self.fill(param, slot, |item| match &item.value {
+            Value::Flag(flag) => Ok(*flag),
+            Value::Text(text) if text == "true" || text == "false" => Ok(text == "true"),
+            _ => Err(wrong_type(item, "true or false", "true or false, without quotes")),
+        });
+    }
+
+    fn choice(&mut self, param: &Param, words: &'static [Word], slot: &mut Slot<&'static str>) {
+        self.fill(param, slot, |item| {
+            let all = || words.iter().map(|w| format!("\"{}\"", w.word)).collect::<Vec<_>>().join(", ");
+            let Value::Text(text) = &item.value else {
+                return Err(wrong_type(item, &format!("one of {}", all()), "a text in quotes"));
+            };
+            words.iter().find(|w| w.word == text).map(|w| w.word).ok_or_else(|| {
+                let near = closest(text, words.iter().map(|w| w.word));
+                Box::new(
+                    Diagnostic::error("E0303", item.span, format!("`{}` is no value of `{}`", shorten(text), param.key))
+                        .label("not known")
+                        .help(near.map_or_else(|| format!("one of {}", all()), |n| format!("did you mean \"{n}\"? ({})", all()))),
+                )
+            })
+        });
+    }
+
+    fn names(&mut self, param: &Param, least: usize, most: usize, slot: &mut Slot<Vec<Located<String>>>) {
+        self.fill(param, slot, |item| {
+            let single;
+            let items = match &item.value {
+                Value::Text(_) if least <= 1 => {
+                    single = [item.clone()];
+                    &single[..]
+                }
+                _ => list_of(item, "a list of names", "names in brackets, such as [\"n1\", \"n3\"]")?,
+            };
+            if items.len() < least || items.len() > most {
+                let wanted = if least == most { format!("{least} names") } else { format!("{least} to {most} names") };
+                return Err(wrong_length(item, &wanted, items.len()));
+            }
+            items
+                .iter()
+                .map(|i| match &i.value {
+                    Value::Text(text) => Ok(Located::new(text.clone(), i.span)),
+                    _ => Err(wrong_type(i, "a name", "a text in quotes")),
+                })
+                .collect()
+        });
+    }
+
+    fn section(&mut self, param: &Param, present: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor)) {
+        let entry = self.entry(param);
+        match entry.map(|e| &e.item.value) {
+            None => {}
+            Some(Value::Table(table)) => {
+                let place = entry.map_or(self.place, |e| e.key_span);
+                *present = Some(Located::new((), place));
+                let mut inner = self.enter(table, place);
+                body(&mut inner);
+                inner.finish();
+            }
+            Some(_) => {
+                if let Some(entry) = entry {
+                    let wrong = wrong_type(&entry.item, "a table", &format!("a section `[{0}]`, or `{0} = {{ … }}`", param.key));
+                    self.push(*wrong);
+                }
+            }
+        }
+    }
+
+    fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members) {
+        let Some(entry) = self.entry(param) else { return };
+        let found: Vec<(Located<String>, Table, Span)> = match (&entry.item.value, form) {
+            (Value::Table(table), Form::Table) => self.table_members(table, param),
+            (Value::List(items), Form::List) => self.list_members(items),
+            (_, Form::Table) => return self.push(*wrong_type(&entry.item, "a table with a key per member", &format!("`[… {}]` with `name = {{ … }}`", param.key))),
+            (_, Form::List) => return self.push(*wrong_type(&entry.item, "a list of tables", &format!("`[[… {}]]` with a `name` each", param.key))),
+        };
+        if found.len() > MOST_MEMBERS {
+            return self.push(
+                Diagnostic::error("E0311", entry.key_span, format!("{} members, at most {MOST_MEMBERS} are accepted", found.len()))
+                    .label("too many")
+                    .help("split the mechanism, or use a layout for copies"),
+            );
+        }
+        for (index, (name, table, place)) in found.into_iter().enumerate() {
+            members.add(name);
+            let mut inner = self.enter(&table, place);
+            members.describe(index, &mut inner);
+            inner.finish();
+        }
+    }
+
+    fn free(&mut self, param: &Param) {
+        self.known.push(param.key);
+    }
+
+    fn reserved(&mut self, keys: &'static [Reserved]) {
+        self.reserved.extend(keys);
+    }
+}
+
+impl Reader<'_> {
+    fn table_members(&mut self, table: &Table, param: &Param) -> Vec<(Located<String>, Table, Span)> {
+        let mut found = Vec::new();
+        for entry in &table.entries {
+            match &entry.item.value {
+                Value::Table(inner) => found.push((Located::new(entry.key.clone(), entry.key_span), inner.clone(), entry.key_span)),
+                _ => self.push(*wrong_type(&entry.item, "a table", &format!("`{} = {{ … }}` in `{}`", shorten(&entry.key), param.key))),
+            }
+        }
+        found
+    }
+
+    fn list_members(&mut self, items: &[Item]) -> Vec<(Located<String>, Table, Span)> {
+        let mut found: Vec<(Located<String>, Table, Span)> = Vec::new();
+        for (index, item) in items.iter().enumerate() {
+            let Value::Table(table) = &item.value else {
+                self.push(*wrong_type(item, "a table", "`[[…]]` with its keys below"));
+                continue;
+            };
+            let mut table = table.clone();
+            let name = match table.take("name") {
+                None => Located::new(format!("{}", index + 1), item.span),
+                Some(Entry { item: Item { value: Value::Text(name), span }, .. }) => Located::new(name, span),
+                Some(entry) => {
+                    self.push(*wrong_type(&entry.item, "a name", "a text in quotes"));
+                    continue;
+                }
+            };
+            if let Some((first, ..)) = found.iter().find(|(other, ..)| other.value == name.value) {
+                self.diagnostics.push(
+                    Diagnostic::error("E0307", name.span, format!("the name `{}` is given twice", shorten(&name.value)))
+                        .label("second time")
+                        .related(first.span, "first time")
+                        .help("give each member its own name"),
+                );
+                continue;
+            }
+            found.push((name, table, item.span));
+        }
+        found
+    }
+}

@@ -1,0 +1,224 @@
+//! Visitors that document: the JSON schema of a project file, and the table of its parameters.
+
+use std::fmt::Write as _;
+
+use forcewright_base::units::{Dimension, Quantity, Unit, format_si};
+use serde_json::{Map, Value, json};
+
+use crate::describe::{Describe, Form, Located, Members, Param, Reserved, Slot, Visitor, Word};
+
+/// JSON schema (draft 2020-12) of a description.
+pub fn json_schema(id: &str, title: &str, design: &mut dyn Describe) -> Value {
+    let mut schema = object(|v| design.describe(v));
+    let mut head = Map::new();
+    head.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
+    head.insert("title".into(), json!(title));
+    head.append(&mut schema);
+    if let Some(Value::Object(properties)) = head.get_mut("properties") {
+        properties.insert("mechanism".into(), json!({ "const": id, "description": "Family of the mechanism." }));
+    }
+    // What a file lacks may stand in the file that it extends.
+    head.remove("required");
+    Value::Object(head)
+}
+
+/// Markdown table of every parameter: path, quantity, range, default, meaning.
+pub fn markdown(design: &mut dyn Describe) -> String {
+    let mut lister = Listing { prefix: String::new(), text: String::new() };
+    lister.text.push_str("| key | takes | range | default | meaning |\n| --- | --- | --- | --- | --- |\n");
+    design.describe(&mut lister);
+    lister.text
+}
+
+fn object(body: impl FnOnce(&mut dyn Visitor)) -> Map<String, Value> {
+    let mut schema = Schema { properties: Map::new(), required: Vec::new() };
+    body(&mut schema);
+    let mut out = Map::new();
+    out.insert("type".into(), json!("object"));
+    out.insert("additionalProperties".into(), json!(false));
+    if !schema.required.is_empty() {
+        out.insert("required".into(), json!(schema.required));
+    }
+    out.insert("properties".into(), Value::Object(schema.properties));
+    out
+}
+
+struct Schema {
+    properties: Map<String, Value>,
+    required: Vec<&'static str>,
+}
+
+impl Schema {
+    fn add(&mut self, param: &Param, mut schema: Value) {
+        if let Value::Object(map) = &mut schema {
+            map.insert("description".into(), json!(param.doc));
+            if let Some(default) = param.default {
+                map.insert("default".into(), default.parse::<f64>().map_or_else(|_| json!(default), |n| json!(n)));
+            }
+        }
+        self.properties.insert(param.key.into(), schema);
+        if param.required {
+            self.required.push(param.key);
+        }
+    }
+}
+
+/// A number, then anything: units are checked by the program, which can say what is wrong with them.
+const NUMBER_THEN_UNIT: &str = r"^\s*[-+−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*\S";
+const NUMBER_MAYBE_UNIT: &str = r"^\s*[-+−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?";
+
+fn quantity_schema(param: &Param) -> Value {
+    if param.dimension == Dimension::Ratio {
+        return json!({ "anyOf": [number_schema(param), { "type": "string", "pattern": NUMBER_MAYBE_UNIT }] });
+    }
+    json!({ "type": "string", "pattern": NUMBER_THEN_UNIT, "examples": [param.dimension.example()] })
+}
+
+fn number_schema(param: &Param) -> Value {
+    let mut schema = Map::new();
+    schema.insert("type".into(), json!("number"));
+    if param.range.min.is_finite() {
+        schema.insert(if param.range.above { "exclusiveMinimum" } else { "minimum" }.into(), json!(param.range.min));
+    }
+    if param.range.max.is_finite() {
+        schema.insert("maximum".into(), json!(param.range.max));
+    }
+    Value::Object(schema)
+}
+
+impl Visitor for Schema {
+    fn quantity(&mut self, param: &Param, _: &mut Slot<Quantity>) {
+        self.add(param, quantity_schema(param));
+    }
+    fn count(&mut self, param: &Param, _: &mut Slot<u32>) {
+        let mut schema = number_schema(param);
+        schema["type"] = json!("integer");
+        self.add(param, schema);
+    }
+    fn numbers(&mut self, param: &Param, _: &mut Slot<Vec<f64>>) {
+        self.add(param, json!({ "type": "array", "items": number_schema(param) }));
+    }
+    fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {
+        self.add(param, json!({ "type": "array", "items": quantity_schema(param), "minItems": 2, "maxItems": 2 }));
+    }
+    fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
+        self.add(param, json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 }));
+    }
+    fn text(&mut self, param: &Param, _: &mut Slot<String>) {
+        self.add(param, json!({ "type": "string" }));
+    }
+    fn flag(&mut self, param: &Param, _: &mut Slot<bool>) {
+        self.add(param, json!({ "type": "boolean" }));
+    }
+    fn choice(&mut self, param: &Param, words: &'static [Word], _: &mut Slot<&'static str>) {
+        self.add(param, json!({ "enum": words.iter().map(|w| w.word).collect::<Vec<_>>() }));
+    }
+    fn names(&mut self, param: &Param, least: usize, most: usize, _: &mut Slot<Vec<Located<String>>>) {
+        let list = json!({ "type": "array", "items": { "type": "string" }, "minItems": least, "maxItems": most });
+        self.add(param, if least <= 1 { json!({ "anyOf": [list, { "type": "string" }] }) } else { list });
+    }
+    fn section(&mut self, param: &Param, _: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor)) {
+        self.add(param, Value::Object(object(body)));
+    }
+    fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members) {
+        let mut member = object(|v| members.prototype(v));
+        let schema = match form {
+            Form::Table => json!({ "type": "object", "additionalProperties": member }),
+            Form::List => {
+                if let Some(Value::Object(properties)) = member.get_mut("properties") {
+                    properties.insert("name".into(), json!({ "type": "string", "description": "Name, by which paths and reports call it." }));
+                }
+                // In variants, members of a list are written by name.
+                json!({ "type": "array", "items": member })
+            }
+        };
+        self.add(param, schema);
+    }
+    fn free(&mut self, param: &Param) {
+        self.add(param, json!({ "type": "object" }));
+    }
+    fn reserved(&mut self, keys: &'static [Reserved]) {
+        for reserved in keys.iter().filter(|r| r.ignored) {
+            self.properties.insert(reserved.key.into(), json!({ "description": reserved.instead }));
+        }
+    }
+}
+
+struct Listing {
+    prefix: String,
+    text: String,
+}
+
+impl Listing {
+    fn row(&mut self, param: &Param, takes: &str) {
+        let range = range_text(param);
+        let default = param.default.map_or_else(|| if param.required { "required".to_owned() } else { String::new() }, |d| format!("`{d}`"));
+        let doc = param.doc.replace('|', "\\|");
+        let _ = writeln!(self.text, "| `{}{}` | {takes} | {range} | {default} | {doc} |", self.prefix, param.key);
+    }
+
+    fn inside(&mut self, part: &str, body: impl FnOnce(&mut Self)) {
+        let before = self.prefix.len();
+        self.prefix.push_str(part);
+        self.prefix.push('.');
+        body(self);
+        self.prefix.truncate(before);
+    }
+}
+
+fn range_text(param: &Param) -> String {
+    let unit = Unit::si(param.dimension);
+    let show = |value: f64| format_si(value, &unit, 6);
+    let sign = if param.range.above { '>' } else { '≥' };
+    match (param.range.min.is_finite(), param.range.max.is_finite()) {
+        (true, true) => format!("{sign} {}, ≤ {}", show(param.range.min), show(param.range.max)),
+        (true, false) => format!("{sign} {}", show(param.range.min)),
+        (false, true) => format!("≤ {}", show(param.range.max)),
+        (false, false) => String::new(),
+    }
+}
+
+impl Visitor for Listing {
+    fn quantity(&mut self, param: &Param, _: &mut Slot<Quantity>) {
+        let takes = format!("{}, `\"{}\"`", param.dimension.name(), param.dimension.example());
+        self.row(param, &takes);
+    }
+    fn count(&mut self, param: &Param, _: &mut Slot<u32>) {
+        self.row(param, "a whole number");
+    }
+    fn numbers(&mut self, param: &Param, _: &mut Slot<Vec<f64>>) {
+        self.row(param, "a list of numbers");
+    }
+    fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {
+        let takes = format!("two of {}, `[\"{1}\", \"{1}\"]`", param.dimension.name(), param.dimension.example());
+        self.row(param, &takes);
+    }
+    fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
+        self.row(param, "a direction, `[0, -1]`");
+    }
+    fn text(&mut self, param: &Param, _: &mut Slot<String>) {
+        self.row(param, "a text");
+    }
+    fn flag(&mut self, param: &Param, _: &mut Slot<bool>) {
+        self.row(param, "`true` or `false`");
+    }
+    fn choice(&mut self, param: &Param, words: &'static [Word], _: &mut Slot<&'static str>) {
+        let takes = words.iter().map(|w| format!("`\"{}\"` ({})", w.word, w.doc)).collect::<Vec<_>>().join("; ");
+        self.row(param, &takes);
+    }
+    fn names(&mut self, param: &Param, _: usize, _: usize, _: &mut Slot<Vec<Located<String>>>) {
+        self.row(param, "names");
+    }
+    fn section(&mut self, param: &Param, _: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor)) {
+        self.row(param, "a table");
+        self.inside(param.key, |lister| body(lister));
+    }
+    fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members) {
+        self.row(param, if form == Form::Table { "a table with a key per member" } else { "a list of tables, each with a `name`" });
+        self.inside(&format!("{}.*", param.key), |lister| members.prototype(lister));
+    }
+    fn free(&mut self, param: &Param) {
+        self.row(param, "tables of differences");
+    }
+    fn reserved(&mut self, _: &'static [Reserved]) {}
+}

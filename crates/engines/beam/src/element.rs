@@ -1,0 +1,290 @@
+//! One beam: its energy, the derivatives of its Lagrangian, and the condensation of its inner modes.
+//!
+//! All quantities are dimensionless here: lengths in units of `L0`, bending stiffness in units of `EI0`, forces in `EI0/L0²`.
+//!
+//! | symbol | here | meaning |
+//! | --- | --- | --- |
+//! | η, φ, θ = η + φ | `eta`, `phi`, `theta` | angle at rest, rotation, deformed angle |
+//! | t, n | (cos θ, sin θ), (−sin θ, cos θ) | directions along and across the beam |
+//! | F = (H, V) | `force` | force of the part beyond a section on the part before it; constant along the beam |
+//! | N = F·t, Q = F·n | `axial`, `across` | axial force (tension positive) and shear force |
+//! | q | `load` | −dM/du / L = Q + (1/EA − 1/kGA) N Q |
+//!
+//! Lagrangian of a beam from A to B, stationary at equilibrium, with the rest shape subtracted by the same quadrature so that rest
+//! is an exact equilibrium:
+//! ∫ EI/(2L) φ'² du + F·(u_B − u_A − L ∫ (t(θ) − t(η)) du) − L ∫ [N²/(2EA) + Q²/(2kGA)] du.
+//!
+//! φ is a polynomial: linear between the end rotations plus integrated Legendre polynomials ("bubbles", zero at both ends)
+//! `B_k = (P_k − P_{k−2})/(2 √(2k−1))`, whose slopes `√(2k−1) P_{k−1}` are orthonormal on [0, 1].
+
+use forcewright_base::{
+    dense::{Lu, Singular},
+    maths,
+    quadrature::{GaussLegendre, legendre_values},
+};
+
+/// Tables of the trial functions for one polynomial degree.
+#[derive(Debug)]
+pub(crate) struct Basis {
+    /// Number of bubbles, degree − 1.
+    pub(crate) bubbles: usize,
+    /// The quadrature rule.
+    pub(crate) rule: GaussLegendre,
+    /// Row per point: the bubbles, then 1 − u, then u.
+    values: Vec<f64>,
+    /// Row per point: Legendre polynomials of degree 0 … points − 1.
+    legendre: Vec<f64>,
+}
+
+impl Basis {
+    pub(crate) fn new(degree: usize) -> Self {
+        // Closure is not polynomial in φ: the extra points keep its error at the level of the modes left out.
+        let points = degree + 4 + degree / 4;
+        let (bubbles, rule) = (degree - 1, GaussLegendre::new(points));
+        let mut values = Vec::with_capacity(points * (bubbles + 2));
+        let mut table = vec![0.0; points * points];
+        let mut p = vec![0.0; degree + 1];
+        for (&u, row) in rule.nodes().iter().zip(table.chunks_exact_mut(points)) {
+            legendre_values(2.0 * u - 1.0, &mut p);
+            values.extend((2..=degree).map(|k| (p[k] - p[k - 2]) / (2.0 * root_of(k))));
+            values.extend([1.0 - u, u]);
+            legendre_values(2.0 * u - 1.0, row);
+        }
+        Self { bubbles, rule, values, legendre: table }
+    }
+
+    pub(crate) fn points(&self) -> usize {
+        self.rule.nodes().len()
+    }
+
+    fn rows(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        self.rule.weights().iter().copied().zip(self.values.chunks_exact(self.bubbles + 2))
+    }
+}
+
+/// √(2k − 1), the norm of the slope of bubble k.
+pub(crate) fn root_of(k: usize) -> f64 {
+    ((2 * k - 1) as f64).sqrt()
+}
+
+/// Constants of one beam, dimensionless.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Constants {
+    /// Length.
+    pub(crate) length: f64,
+    /// EI/L.
+    pub(crate) bending: f64,
+    /// 1/EA; 0 if inextensible.
+    pub(crate) axial: f64,
+    /// 1/kGA; 0 if rigid in shear.
+    pub(crate) shear: f64,
+}
+
+/// The rest shape at the quadrature points.
+#[derive(Debug)]
+pub(crate) struct RestShape {
+    eta: Vec<f64>,
+    cos: Vec<f64>,
+    sin: Vec<f64>,
+}
+
+impl RestShape {
+    pub(crate) fn new(basis: &Basis, angle: impl Fn(f64) -> f64) -> Self {
+        let eta: Vec<f64> = basis.rule.nodes().iter().map(|&u| angle(u)).collect();
+        // Through the same addition as in the loaded state, so that no rotation gives the same bits.
+        let turned: Vec<(f64, f64)> = eta.iter().map(|a| maths::sin_cos(a + 0.0)).collect();
+        Self { cos: turned.iter().map(|t| t.1).collect(), sin: turned.iter().map(|t| t.0).collect(), eta }
+    }
+}
+
+/// End rotations, force and bubbles of one beam.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coordinates<'a> {
+    pub(crate) ends: [f64; 2],
+    pub(crate) force: [f64; 2],
+    pub(crate) bubbles: &'a [f64],
+}
+
+impl Coordinates<'_> {
+    fn rotation(&self, row: &[f64]) -> f64 {
+        let (inner, linear) = row.split_at(self.bubbles.len());
+        let sum: f64 = inner.iter().zip(self.bubbles).map(|(b, a)| b * a).sum();
+        sum + (linear[0] * self.ends[0] + linear[1] * self.ends[1])
+    }
+}
+
+/// Buffers for the linearised equations of one beam.
+#[derive(Debug)]
+pub(crate) struct Element {
+    /// Second derivatives by (bubbles, end rotations), symmetric, row-major.
+    hessian: Vec<f64>,
+    /// First derivatives by (bubbles, end rotations).
+    residual: Vec<f64>,
+    /// Mixed derivatives by (bubbles, end rotations) and (H, V).
+    coupling: Vec<f64>,
+    lu: Lu,
+    /// Condensation: bubbles' answer to unit (φ_A, φ_B, H, V) and to their own residual, five columns.
+    answer: Vec<f64>,
+    /// Condensed second derivatives by (φ_A, φ_B, H, V).
+    pub(crate) matrix: [[f64; 4]; 4],
+    /// Condensed first derivatives by (φ_A, φ_B, H, V); the last two are the gap without the node displacements.
+    pub(crate) gradient: [f64; 4],
+}
+
+impl Element {
+    pub(crate) fn new(bubbles: usize) -> Self {
+        let n = bubbles + 2;
+        Self {
+            hessian: vec![0.0; n * n],
+            residual: vec![0.0; n],
+            coupling: vec![0.0; n * 2],
+            lu: Lu::new(),
+            answer: vec![0.0; bubbles * 5],
+            matrix: [[0.0; 4]; 4],
+            gradient: [0.0; 4],
+        }
+    }
+
+    /// Evaluates the beam at `at` and condenses its bubbles.
+    ///
+    /// # Errors
+    /// [`Singular`] if the bubbles alone are at a buckling load to working precision.
+    pub(crate) fn linearise(&mut self, basis: &Basis, rest: &RestShape, c: &Constants, at: Coordinates) -> Result<(), Singular> {
+        self.integrate(basis, rest, c, at);
+        self.add_bending(c, at);
+        self.condense(basis.bubbles)
+    }
+
+    /// The part under the integral sign, without the bending energy.
+    fn integrate(&mut self, basis: &Basis, rest: &RestShape, c: &Constants, at: Coordinates) {
+        let n = basis.bubbles + 2;
+        self.hessian.fill(0.0);
+        self.residual.fill(0.0);
+        self.coupling.fill(0.0);
+        let [h, v] = at.force;
+        let softness = c.axial - c.shear;
+        let (mut gap, mut compliance) = ([0.0; 2], [0.0; 3]);
+        for (point, (weight, row)) in basis.rows().enumerate() {
+            let (sin, cos) = maths::sin_cos(rest.eta[point] + at.rotation(row));
+            let (axial, across) = (h * cos + v * sin, v * cos - h * sin);
+            let load = across + softness * axial * across;
+            let load_slope = softness * (across * across - axial * axial) - axial;
+            let by_h = softness * (cos * across - axial * sin) - sin;
+            let by_v = softness * (sin * across + axial * cos) + cos;
+            let w = weight * c.length;
+            for (i, &b) in row.iter().enumerate() {
+                self.residual[i] -= w * load * b;
+                self.coupling[2 * i] -= w * by_h * b;
+                self.coupling[2 * i + 1] -= w * by_v * b;
+                let factor = -w * load_slope * b;
+                for (target, other) in self.hessian[i * n + i..(i + 1) * n].iter_mut().zip(&row[i..]) {
+                    *target += factor * other;
+                }
+            }
+            gap[0] -= w * (cos - rest.cos[point] + c.axial * axial * cos - c.shear * across * sin);
+            gap[1] -= w * (sin - rest.sin[point] + c.axial * axial * sin + c.shear * across * cos);
+            compliance[0] -= w * (c.axial * cos * cos + c.shear * sin * sin);
+            compliance[1] -= w * softness * sin * cos;
+            compliance[2] -= w * (c.axial * sin * sin + c.shear * cos * cos);
+        }
+        self.gradient = [0.0, 0.0, gap[0], gap[1]];
+        self.matrix = [[0.0; 4]; 4];
+        self.matrix[2][2] = compliance[0];
+        self.matrix[2][3] = compliance[1];
+        self.matrix[3][2] = compliance[1];
+        self.matrix[3][3] = compliance[2];
+    }
+
+    fn add_bending(&mut self, c: &Constants, at: Coordinates) {
+        let bubbles = at.bubbles.len();
+        let n = bubbles + 2;
+        for (k, a) in at.bubbles.iter().enumerate() {
+            self.hessian[k * n + k] += c.bending;
+            self.residual[k] += c.bending * a;
+        }
+        let (a, b) = (bubbles, bubbles + 1);
+        self.hessian[a * n + a] += c.bending;
+        self.hessian[a * n + b] -= c.bending;
+        self.hessian[b * n + b] += c.bending;
+        let moment = c.bending * (at.ends[1] - at.ends[0]);
+        self.residual[a] -= moment;
+        self.residual[b] += moment;
+        for row in 1..n {
+            for column in 0..row {
+                self.hessian[row * n + column] = self.hessian[column * n + row];
+            }
+        }
+    }
+
+    fn condense(&mut self, bubbles: usize) -> Result<(), Singular> {
+        let n = bubbles + 2;
+        self.lu.factor(bubbles, n, &self.hessian)?;
+        for (row, answer) in self.answer.chunks_exact_mut(5).enumerate() {
+            answer[..2].copy_from_slice(&self.hessian[row * n + bubbles..(row + 1) * n]);
+            answer[2..4].copy_from_slice(&self.coupling[2 * row..2 * row + 2]);
+            answer[4] = self.residual[row];
+        }
+        self.lu.solve_columns(&mut self.answer, 5);
+        for end in 0..2 {
+            let row = bubbles + end;
+            self.gradient[end] = self.residual[row];
+            for other in 0..2 {
+                self.matrix[end][other] = self.hessian[row * n + bubbles + other];
+                self.matrix[end][2 + other] = self.coupling[2 * row + other];
+                self.matrix[2 + other][end] = self.coupling[2 * row + other];
+            }
+        }
+        for (k, answer) in self.answer.chunks_exact(5).enumerate() {
+            let left = [
+                self.hessian[k * n + bubbles],
+                self.hessian[k * n + bubbles + 1],
+                self.coupling[2 * k],
+                self.coupling[2 * k + 1],
+            ];
+            for (i, value) in left.iter().enumerate() {
+                for (target, factor) in self.matrix[i].iter_mut().zip(answer) {
+                    *target -= value * factor;
+                }
+                self.gradient[i] -= value * answer[4];
+            }
+        }
+        Ok(())
+    }
+
+    /// Change of the bubbles that goes with a change of (φ_A, φ_B, H, V); `residual` is 1 for a Newton step, 0 for a tangent.
+    pub(crate) fn expand(&self, change: [f64; 4], residual: f64, bubbles: &mut [f64]) {
+        for (target, answer) in bubbles.iter_mut().zip(self.answer.chunks_exact(5)) {
+            let sum: f64 = answer.iter().zip(&change).map(|(a, c)| a * c).sum();
+            *target = -(sum + residual * answer[4]);
+        }
+    }
+}
+
+/// Strain energy, and modes with one more sweep through the equilibrium equation.
+///
+/// The moment follows from its own differential equation −M' = L q with q interpolated at the quadrature points, instead of from
+/// φ': this returns the bubbles solved for, adds those of degree `P + 1 … points + 1`, and makes the end moments those that
+/// balance the nodes. `modes` receives as many entries as there are points.
+pub(crate) fn recover(basis: &Basis, rest: &RestShape, c: &Constants, at: Coordinates, modes: &mut Vec<f64>) -> f64 {
+    let points = basis.points();
+    let mut coefficients = vec![0.0; points + 2];
+    let softness = c.axial - c.shear;
+    let mut soft_energy = 0.0;
+    for (point, ((weight, row), p)) in basis.rows().zip(basis.legendre.chunks_exact(points)).enumerate() {
+        let (sin, cos) = maths::sin_cos(rest.eta[point] + at.rotation(row));
+        let (axial, across) = (at.force[0] * cos + at.force[1] * sin, at.force[1] * cos - at.force[0] * sin);
+        let load = weight * (across + softness * axial * across);
+        // The last two stay zero: they are beyond the interpolation.
+        for (target, value) in coefficients.iter_mut().zip(p) {
+            *target += load * value;
+        }
+        soft_energy += weight * (c.axial * axial * axial + c.shear * across * across);
+    }
+    let ratio = 0.5 * c.length / c.bending;
+    modes.clear();
+    // Σ w q P_j is q_j/(2j+1), which is just what the recurrence ∫P_j = (P_{j+1} − P_{j−1})/(2(2j+1)) needs.
+    modes.extend((2..points + 2).map(|k| ratio * (coefficients[k] - coefficients[k - 2]) / root_of(k)));
+    let turn = at.ends[1] - at.ends[0];
+    let bending: f64 = turn * turn + at.bubbles.iter().map(|a| a * a).sum::<f64>();
+    0.5 * (c.bending * bending + c.length * soft_energy)
+}

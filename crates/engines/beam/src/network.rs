@@ -1,0 +1,331 @@
+//! The description of a network: nodes, beams, supports and the drive.
+
+use forcewright_base::maths;
+
+use crate::{error::NetworkError, section::Section, shape::Shape};
+
+/// Planar beams that meet at nodes, and what moves them. All quantities in SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Network {
+    /// Where beams meet and where the ground holds them.
+    pub nodes: Vec<Node>,
+    /// The beams.
+    pub beams: Vec<Beam>,
+    /// The one control of the path.
+    pub drive: Drive,
+}
+
+/// A place where beams end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Position at rest, m.
+    pub position_m: [f64; 2],
+    /// How the ground holds it.
+    pub support: Support,
+}
+
+/// How the ground holds a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Support {
+    /// Not at all.
+    Free,
+    /// Position and rotation are held.
+    Clamped,
+    /// The position is held, the rotation is free.
+    Pinned,
+    /// It moves along a straight guide.
+    Slider {
+        /// Direction of the guide; any length but zero.
+        direction: [f64; 2],
+        /// Whether it may turn.
+        rotation: Rotation,
+    },
+}
+
+/// Whether a slider may turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rotation {
+    /// It keeps its angle.
+    Fixed,
+    /// It turns freely.
+    Free,
+}
+
+/// One beam with a constant section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beam {
+    /// Index of the node where u = 0.
+    pub start: usize,
+    /// Index of the node where u = 1.
+    pub end: usize,
+    /// Shape at rest; its chord must lead from the start node to the end node.
+    pub shape: Shape,
+    /// Cross-section and material.
+    pub section: Section,
+    /// How it is joined to its start node.
+    pub start_joint: Joint,
+    /// How it is joined to its end node.
+    pub end_joint: Joint,
+}
+
+/// How a beam is joined to a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Joint {
+    /// The end turns with the node.
+    Rigid,
+    /// The end turns freely.
+    Hinged,
+}
+
+/// What is prescribed, in proportion to one control that grows from 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Drive {
+    /// The displacement of a node along a direction; the control is in m, the reaction in N.
+    ///
+    /// On a slider whose guide s is not parallel to the direction d, the node moves by Δ/(s·d) along the guide.
+    Displacement {
+        /// The node.
+        node: usize,
+        /// Direction; any length but zero.
+        direction: [f64; 2],
+    },
+    /// The rotation of a node, counter-clockwise; the control is in rad, the reaction in N·m.
+    Rotation {
+        /// The node.
+        node: usize,
+    },
+    /// A force of constant direction on a node; the control is in N, its displacement is measured along the direction.
+    Force {
+        /// The node.
+        node: usize,
+        /// Direction; any length but zero.
+        direction: [f64; 2],
+    },
+    /// A moment on a node, counter-clockwise; the control is in N·m.
+    Moment {
+        /// The node.
+        node: usize,
+    },
+}
+
+impl Drive {
+    /// The driven node.
+    pub fn node(&self) -> usize {
+        match *self {
+            Self::Displacement { node, .. } | Self::Rotation { node } | Self::Force { node, .. } | Self::Moment { node } => node,
+        }
+    }
+
+    /// Whether the control is a displacement or rotation (and not a force or moment).
+    pub fn is_kinematic(&self) -> bool {
+        matches!(self, Self::Displacement { .. } | Self::Rotation { .. })
+    }
+}
+
+/// Which deformations a beam has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Theory {
+    /// Bending only: the elastica of Lan, Wang & Chen 2010. Stress is bending stress, their eq. (5).
+    Inextensible,
+    /// Bending, stretching and shear without limits on rotation: E. Reissner, "On one-dimensional finite-strain beam theory: the
+    /// plane problem", ZAMP 23 (1972). Stress includes the axial force.
+    #[default]
+    Reissner,
+}
+
+/// Options of [`crate::trace`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Which deformations are modelled. Default [`Theory::Reissner`].
+    pub theory: Theory,
+    /// Largest difference between two resolutions, relative to the largest force and to the largest stress of the path, in (0, 1).
+    /// An estimate that in practice bounds the error, not a proof. Default 1e-8.
+    pub accuracy: f64,
+    /// Budget of Newton iterations for the whole call, so that every call ends. Default 50 000.
+    pub iteration_limit: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { theory: Theory::default(), accuracy: 1e-8, iteration_limit: 50_000 }
+    }
+}
+
+/// Unit vector along `v`.
+pub(crate) fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
+    // Two steps, so that neither huge nor tiny vectors lose their direction.
+    let size = v[0].abs().max(v[1].abs());
+    if !(size > 0.0 && size.is_finite() && v[0].is_finite() && v[1].is_finite()) {
+        return None;
+    }
+    let (x, y) = (v[0] / size, v[1] / size);
+    let length = maths::hypot(x, y);
+    Some([x / length, y / length])
+}
+
+impl Network {
+    /// Largest number of nodes, and of beams.
+    pub const LARGEST: usize = 64;
+    /// Largest distance between the end of a shape and its node, relative to the length of the beam.
+    pub const LARGEST_GAP: f64 = 1e-6;
+
+    /// Checks everything that can be checked without solving.
+    ///
+    /// # Errors
+    /// [`NetworkError`] names the first fault found.
+    pub fn check(&self) -> Result<(), NetworkError> {
+        if self.beams.is_empty() {
+            return Err(NetworkError::NoBeams);
+        }
+        let count = self.beams.len().max(self.nodes.len());
+        if count > Self::LARGEST {
+            return Err(NetworkError::TooLarge { count });
+        }
+        for (node, n) in self.nodes.iter().enumerate() {
+            if !(n.position_m[0].is_finite() && n.position_m[1].is_finite()) {
+                return Err(NetworkError::Position { node });
+            }
+            if let Support::Slider { direction, .. } = n.support
+                && unit(direction).is_none()
+            {
+                return Err(NetworkError::Direction { node });
+            }
+        }
+        for beam in 0..self.beams.len() {
+            self.check_beam(beam)?;
+        }
+        for node in 0..self.nodes.len() {
+            if !self.beams.iter().any(|b| b.start == node || b.end == node) {
+                return Err(NetworkError::LooseNode { node });
+            }
+        }
+        self.check_drive()?;
+        self.check_rigid_motion()
+    }
+
+    fn check_beam(&self, beam: usize) -> Result<(), NetworkError> {
+        let b = &self.beams[beam];
+        for node in [b.start, b.end] {
+            if node >= self.nodes.len() {
+                return Err(NetworkError::NodeOutOfRange { beam, node });
+            }
+        }
+        if b.start == b.end {
+            return Err(NetworkError::BeamOnOneNode { beam });
+        }
+        if let Some((what, value)) = b.section.fault() {
+            return Err(NetworkError::Section { beam, what, value });
+        }
+        let (chord, from, to) = (b.shape.chord_m(), self.nodes[b.start].position_m, self.nodes[b.end].position_m);
+        let gap_m = maths::hypot(to[0] - from[0] - chord[0], to[1] - from[1] - chord[1]);
+        // Positions far from the origin carry their own rounding.
+        let rounding = 8.0 * f64::EPSILON * from.iter().chain(&to).fold(0.0_f64, |m, v| m.max(v.abs()));
+        if gap_m <= Self::LARGEST_GAP * b.shape.length_m() + rounding {
+            return Ok(());
+        }
+        Err(NetworkError::DoesNotClose { beam, gap_m })
+    }
+
+    /// Whether any beam end turns with the node.
+    pub(crate) fn turns_beams(&self, node: usize) -> bool {
+        let rigid = |j: Joint| j == Joint::Rigid;
+        self.beams.iter().any(|b| (b.start == node && rigid(b.start_joint)) || (b.end == node && rigid(b.end_joint)))
+    }
+
+    fn check_drive(&self) -> Result<(), NetworkError> {
+        let node = self.drive.node();
+        let Some(driven) = self.nodes.get(node) else {
+            return Err(NetworkError::DriveOutOfRange { node });
+        };
+        let allowed = match self.drive {
+            Drive::Displacement { direction, .. } | Drive::Force { direction, .. } => {
+                let Some(d) = unit(direction) else {
+                    return Err(NetworkError::Direction { node });
+                };
+                match driven.support {
+                    Support::Free => true,
+                    Support::Clamped | Support::Pinned => false,
+                    Support::Slider { direction, .. } => {
+                        // Below this the node would move 10⁸ times as far as the drive.
+                        unit(direction).is_some_and(|s| (s[0] * d[0] + s[1] * d[1]).abs() > 1e-8)
+                    }
+                }
+            }
+            Drive::Rotation { .. } | Drive::Moment { .. } => {
+                let held = matches!(driven.support, Support::Clamped | Support::Slider { rotation: Rotation::Fixed, .. });
+                !held && self.turns_beams(node)
+            }
+        };
+        if allowed { Ok(()) } else { Err(NetworkError::DriveBlocked { node }) }
+    }
+
+    /// Each connected part, taken as one rigid body, must be held by its supports and a kinematic drive.
+    fn check_rigid_motion(&self) -> Result<(), NetworkError> {
+        let mut part: Vec<usize> = (0..self.nodes.len()).collect();
+        for _ in 0..self.nodes.len() {
+            for b in &self.beams {
+                let lowest = part[b.start].min(part[b.end]);
+                (part[b.start], part[b.end]) = (lowest, lowest);
+            }
+        }
+        for name in 0..self.nodes.len() {
+            if part[name] == name && self.rigid_freedoms(&part, name) > 0 {
+                return Err(NetworkError::Mechanism { node: name });
+            }
+        }
+        Ok(())
+    }
+
+    /// Degrees of freedom left to one part as a rigid body: 3 less the rank of its constraints on (x, y, rotation).
+    fn rigid_freedoms(&self, part: &[usize], name: usize) -> usize {
+        let origin = self.nodes[name].position_m;
+        let lengths = self.beams.iter().filter(|b| part[b.start] == name).map(|b| b.shape.length_m());
+        let size = lengths.fold(0.0, f64::max);
+        let mut rows: Vec<[f64; 3]> = Vec::new();
+        for (node, n) in self.nodes.iter().enumerate().filter(|(node, _)| part[*node] == name) {
+            let (x, y) = ((n.position_m[0] - origin[0]) / size, (n.position_m[1] - origin[1]) / size);
+            let along = |d: [f64; 2]| [d[0], d[1], x * d[1] - y * d[0]];
+            match n.support {
+                Support::Free => {}
+                Support::Clamped => return 0,
+                Support::Pinned => rows.extend([along([1.0, 0.0]), along([0.0, 1.0])]),
+                Support::Slider { direction, rotation } => {
+                    let s = unit(direction).unwrap_or([1.0, 0.0]);
+                    rows.push(along([-s[1], s[0]]));
+                    if rotation == Rotation::Fixed {
+                        rows.push([0.0, 0.0, 1.0]);
+                    }
+                }
+            }
+            match self.drive {
+                Drive::Displacement { node: driven, direction } if driven == node => {
+                    rows.push(along(unit(direction).unwrap_or([1.0, 0.0])));
+                }
+                Drive::Rotation { node: driven } if driven == node => rows.push([0.0, 0.0, 1.0]),
+                _ => {}
+            }
+        }
+        3 - rank(&mut rows)
+    }
+}
+
+/// Rank of a list of rows, by elimination with full row pivoting.
+fn rank(rows: &mut [[f64; 3]]) -> usize {
+    let mut rank = 0;
+    for column in 0..3 {
+        let best = (rank..rows.len()).max_by(|&a, &b| rows[a][column].abs().total_cmp(&rows[b][column].abs()));
+        let Some(best) = best.filter(|&b| rows[b][column].abs() > 1e-9) else {
+            continue;
+        };
+        rows.swap(rank, best);
+        let pivot = rows[rank];
+        for row in &mut rows[rank + 1..] {
+            let factor = row[column] / pivot[column];
+            for k in 0..3 {
+                row[k] -= factor * pivot[k];
+            }
+        }
+        rank += 1;
+    }
+    rank
+}
