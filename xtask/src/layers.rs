@@ -99,7 +99,8 @@ impl<'a> Room<'a> {
 
 /// Everything that is wrong with the direction of the dependencies.
 pub(crate) fn violations(packages: &[Package]) -> Vec<String> {
-    let rooms: BTreeMap<&str, Room<'_>> = packages.iter().filter_map(|package| Some((package.name.as_str(), Room::of(&package.folder)?))).collect();
+    let rooms: BTreeMap<&str, Room<'_>> =
+        packages.iter().filter_map(|package| Some((package.name.as_str(), Room::of(&package.folder)?))).collect();
     let mut found = Vec::new();
     for package in packages {
         let Some(&room) = rooms.get(package.name.as_str()) else {
@@ -241,8 +242,11 @@ mod tests {
     fn allowed(from: &str) -> Vec<&'static str> {
         let engines = ["crates/engines/beam", "crates/engines/curves", "crates/engines/elements", "crates/engines/study"];
         let below_mechanisms = [&["crates/base", "crates/contract", "crates/model"][..], &engines].concat();
-        let below_library =
-            [&below_mechanisms[..], &["crates/mechanisms/cam", "crates/mechanisms/compliant", "crates/outputs/fabricate", "crates/outputs/report"]].concat();
+        let below_library = [
+            &below_mechanisms[..],
+            &["crates/mechanisms/cam", "crates/mechanisms/compliant", "crates/outputs/fabricate", "crates/outputs/report"],
+        ]
+        .concat();
         match from {
             "crates/base" | "xtask" => vec![],
             "crates/model" => vec!["crates/base"],

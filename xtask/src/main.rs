@@ -104,12 +104,19 @@ fn run(args: &[String]) -> Result<ExitCode, String> {
         "test" => {
             let options = Options::parse(rest, &["--rust", "--browser"], true, 0)?;
             let only_some = options.has("--rust") || options.has("--browser");
-            let what = test::What { rust: !only_some || options.has("--rust"), examples: !only_some, browser: !only_some || options.has("--browser") };
+            let what = test::What {
+                rust: !only_some || options.has("--rust"),
+                examples: !only_some,
+                browser: !only_some || options.has("--browser"),
+            };
             Ok(test::run(&workspace, what, options.binary.as_deref()))
         }
         "fuzz" => {
             let options = Options::parse(rest, &[], false, 1)?;
-            let seconds = options.positional.first().map_or(Ok(60), |text| text.parse::<u64>().map_err(|_| format!("`{text}` is no number of seconds")))?;
+            let seconds = options
+                .positional
+                .first()
+                .map_or(Ok(60), |text| text.parse::<u64>().map_err(|_| format!("`{text}` is no number of seconds")))?;
             fuzz::run(&workspace, seconds)
         }
         other => Err(format!("no command `{other}`; `cargo xtask help` lists them")),

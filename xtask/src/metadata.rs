@@ -57,8 +57,10 @@ fn parse(value: &Value) -> Result<Metadata, String> {
         let manifest = PathBuf::from(text(package, "manifest_path")?);
         let folder = manifest.parent().and_then(|folder| folder.strip_prefix(&root).ok()).unwrap_or(Path::new(""));
         let dependencies = package["dependencies"].as_array().into_iter().flatten();
-        let mut dependencies: Vec<String> =
-            dependencies.filter(|dependency| dependency["kind"] != "dev").map(|dependency| text(dependency, "name")).collect::<Result<_, _>>()?;
+        let mut dependencies: Vec<String> = dependencies
+            .filter(|dependency| dependency["kind"] != "dev")
+            .map(|dependency| text(dependency, "name"))
+            .collect::<Result<_, _>>()?;
         dependencies.sort();
         dependencies.dedup();
         packages.push(Package {

@@ -87,7 +87,13 @@ impl Steps {
         println!("\n{task}: {} steps in {total:.1} s", self.entries.len());
         for entry in &self.entries {
             let first_line = entry.outcome.reason().and_then(|reason| reason.lines().next()).map(|line| format!(": {line}"));
-            println!("  {:<7} {:>7.1} s  {}{}", entry.outcome.word(), entry.duration.as_secs_f64(), entry.name, first_line.unwrap_or_default());
+            println!(
+                "  {:<7} {:>7.1} s  {}{}",
+                entry.outcome.word(),
+                entry.duration.as_secs_f64(),
+                entry.name,
+                first_line.unwrap_or_default()
+            );
         }
         if self.counts().1 == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
     }

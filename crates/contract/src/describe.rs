@@ -217,3 +217,34 @@ impl<T: Describe + Default> Members for Vec<Member<T>> {
         T::default().describe(visitor);
     }
 }
+
+/// A table of its own: what stands in it, and whether it is there.
+#[derive(Clone, Debug, Default)]
+pub struct Section<T> {
+    /// Filled where the table is given; its span is the table's header.
+    pub present: Slot<()>,
+    /// What stands in it.
+    pub body: T,
+}
+
+impl<T: Describe> Section<T> {
+    /// Shows the table to a visitor.
+    pub fn describe(&mut self, visitor: &mut dyn Visitor, param: &Param) {
+        let Self { present, body } = self;
+        visitor.section(param, present, &mut |v| body.describe(v));
+    }
+}
+
+impl<T> std::ops::Deref for Section<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.body
+    }
+}
+
+impl<T> std::ops::DerefMut for Section<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.body
+    }
+}

@@ -66,7 +66,7 @@ impl Model {
             kinematic: network.drive.is_kinematic(),
             turning: matches!(network.drive, Drive::Rotation { .. } | Drive::Moment { .. }),
         };
-        for (index, beam) in network.beams.iter().enumerate() {
+        for beam in &network.beams {
             let mut end = |node: usize, joint: Joint| match joint {
                 Joint::Rigid => model.nodes[node].rotation,
                 Joint::Hinged => {
@@ -86,7 +86,7 @@ impl Model {
                 shear: soft(beam.section.shear_stiffness_n()),
             };
             let start_m = network.nodes[beam.start].position_m;
-            let info = Arc::new(BeamInfo::new(index, start_m, beam, theory));
+            let info = Arc::new(BeamInfo::new(start_m, beam, theory));
             model.beams.push(BeamModel { constants, nodes: [beam.start, beam.end], ends, force, info });
         }
         model.move_driven_last(network.drive.node());

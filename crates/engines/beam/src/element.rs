@@ -17,6 +17,8 @@
 //! φ is a polynomial: linear between the end rotations plus integrated Legendre polynomials ("bubbles", zero at both ends)
 //! `B_k = (P_k − P_{k−2})/(2 √(2k−1))`, whose slopes `√(2k−1) P_{k−1}` are orthonormal on [0, 1].
 
+use std::sync::Arc;
+
 use forcewright_base::{
     dense::{Lu, Singular},
     maths,
@@ -29,7 +31,7 @@ pub(crate) struct Basis {
     /// Number of bubbles, degree − 1.
     pub(crate) bubbles: usize,
     /// The quadrature rule.
-    pub(crate) rule: GaussLegendre,
+    pub(crate) rule: Arc<GaussLegendre>,
     /// Row per point: the bubbles, then 1 − u, then u.
     values: Vec<f64>,
     /// Row per point: Legendre polynomials of degree 0 … points − 1.
@@ -40,7 +42,7 @@ impl Basis {
     pub(crate) fn new(degree: usize) -> Self {
         // Closure is not polynomial in φ: the extra points keep its error at the level of the modes left out.
         let points = degree + 4 + degree / 4;
-        let (bubbles, rule) = (degree - 1, GaussLegendre::new(points));
+        let (bubbles, rule) = (degree - 1, Arc::new(GaussLegendre::new(points)));
         let mut values = Vec::with_capacity(points * (bubbles + 2));
         let mut table = vec![0.0; points * points];
         let mut p = vec![0.0; degree + 1];
@@ -235,12 +237,7 @@ impl Element {
             }
         }
         for (k, answer) in self.answer.chunks_exact(5).enumerate() {
-            let left = [
-                self.hessian[k * n + bubbles],
-                self.hessian[k * n + bubbles + 1],
-                self.coupling[2 * k],
-                self.coupling[2 * k + 1],
-            ];
+            let left = [self.hessian[k * n + bubbles], self.hessian[k * n + bubbles + 1], self.coupling[2 * k], self.coupling[2 * k + 1]];
             for (i, value) in left.iter().enumerate() {
                 for (target, factor) in self.matrix[i].iter_mut().zip(answer) {
                     *target -= value * factor;

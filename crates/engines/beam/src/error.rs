@@ -221,3 +221,34 @@ impl fmt::Display for Status {
         }
     }
 }
+
+/// Why a path has no point at a control.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum PathError {
+    /// The control is negative, not finite, or beyond what was reached.
+    OutOfReach {
+        /// What was asked.
+        control: f64,
+        /// The largest control reached.
+        reached: f64,
+    },
+    /// The equations did not converge between two known states.
+    NotConverged {
+        /// What was asked.
+        control: f64,
+    },
+}
+
+impl fmt::Display for PathError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfReach { control, reached } => {
+                write!(f, "{control:.6e} is not on the path, which reaches from 0 to {reached:.6e}; trace it further")
+            }
+            Self::NotConverged { control } => write!(f, "no equilibrium was found at {control:.6e}; add a station close to it"),
+        }
+    }
+}
+
+impl std::error::Error for PathError {}

@@ -30,7 +30,7 @@ pub struct Shape {
 /// Why a shape is impossible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ShapeError {
-    /// The length is not positive and finite.
+    /// The length is not in [`Shape::LENGTHS_M`].
     Length {
         /// The length, m.
         length_m: f64,
@@ -56,7 +56,7 @@ pub enum ShapeError {
 impl fmt::Display for ShapeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Length { length_m } => write!(f, "beam length is {length_m} m; it must be positive and finite"),
+            Self::Length { length_m } => write!(f, "beam length is {length_m} m; it must be positive and of a technical size"),
             Self::NotFinite => write!(f, "a coefficient or coordinate of the shape is not a finite number"),
             Self::NoCoefficients => write!(f, "the shape has no coefficients; a straight beam has one, its angle"),
             Self::TurnsTooMuch { turn_rad } => write!(
@@ -76,6 +76,8 @@ impl fmt::Display for ShapeError {
 impl std::error::Error for ShapeError {}
 
 impl Shape {
+    /// Possible lengths, m: far beyond any mechanism, and safe from overflow.
+    pub const LENGTHS_M: std::ops::RangeInclusive<f64> = 1e-20..=1e20;
     /// Largest bound Σ k |`c_k`| (k ≥ 1) on the turn of a shape, rad.
     pub const LARGEST_TURN_RAD: f64 = 1e4;
 
@@ -90,7 +92,7 @@ impl Shape {
         if !angle_rad.iter().all(|c| c.is_finite()) {
             return Err(ShapeError::NotFinite);
         }
-        if !(length_m > 0.0 && length_m.is_finite()) {
+        if !Self::LENGTHS_M.contains(&length_m) {
             return Err(ShapeError::Length { length_m });
         }
         let turn_rad = turn_bound(&angle_rad) + angle_rad[0].abs();
@@ -261,7 +263,7 @@ mod tests {
         assert_eq!(Shape::from_chord([0.0, 0.0], &[1.0]), Err(ShapeError::NoChord));
         assert!(matches!(Shape::from_chord([1.0, 0.0], &[TAU]), Err(ShapeError::ClosedLoop { .. })));
         assert!(matches!(Shape::from_chord([1.0, f64::NAN], &[FRAC_PI_2]), Err(ShapeError::NotFinite)));
-        assert!(matches!(Shape::from_chord([1e308, 1e308], &[]), Err(ShapeError::Length { .. })));
+        assert!(matches!(Shape::from_chord([1.5e308, 1.5e308], &[]), Err(ShapeError::Length { .. })));
         let s = Shape::new(vec![0.0, 1.0], 1.0).unwrap();
         close(s.point_m(f64::NAN), [0.0, 0.0], 1e-300);
     }

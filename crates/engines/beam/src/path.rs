@@ -1,0 +1,238 @@
+//! Equilibrium paths: stepping from rest, at increasing resolution.
+
+use std::sync::Arc;
+
+use crate::{
+    assembly::{Model, Resolution},
+    error::{NetworkError, PathError, Status},
+    network::{Network, Settings},
+    state::Point,
+    stepping::{Knot, Run, Stepper, interpolate},
+};
+
+/// Polynomial degrees of the rotation of a beam that are tried in turn.
+const DEGREES: [usize; 6] = [8, 12, 16, 24, 32, 48];
+
+/// Work done, the same on every machine.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Evaluations of the equations of all beams.
+    pub residual_evaluations: u64,
+    /// Factorisations of the system of the network.
+    pub factorisations: u64,
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps rejected and repeated with half the length.
+    pub rejected_steps: u64,
+}
+
+/// An equilibrium path from rest.
+#[derive(Debug, Clone)]
+pub struct Path {
+    /// The stations reached, in order.
+    pub points: Vec<Point>,
+    /// How the path ended.
+    pub status: Status,
+    /// Difference between the two finest resolutions, relative to the largest force or stress, whichever is worse; `None` if only one
+    /// was computed.
+    pub error_estimate: Option<f64>,
+    /// Polynomial degree of the rotation of each beam.
+    pub degree: usize,
+    /// Work done, all resolutions together.
+    pub counters: Counters,
+    model: Arc<Model>,
+    resolution: Arc<Resolution>,
+    knots: Arc<Vec<Knot>>,
+}
+
+/// The path of a network at given stations: ascending values ≥ 0 of the control, in the unit of the drive.
+///
+/// Starts at rest, which is an exact equilibrium, and never from another design's solution, so a path is a pure function of its
+/// input. Steps are cubic Hermite extrapolations corrected by Newton's method and kept so short that the correction stays small;
+/// every station is met exactly. The whole path is computed at increasing polynomial degree until forces and stresses of two
+/// degrees agree to [`Settings::accuracy`]; the finer one is returned.
+///
+/// `progress` receives a growing fraction in [0, 1] after each step; `false` stops.
+///
+/// Failure to reach a station is not an error: [`Path::status`] says what was reached and why.
+///
+/// # Errors
+/// [`NetworkError`] if the network, the stations or the settings make no sense.
+///
+/// ```
+/// use forcewright_beam::{Beam, Drive, Joint, Network, Node, Section, Settings, Shape, Support, Theory, trace};
+/// // A cantilever, 0.1 m long, bent to a half circle by a moment of π EI/L.
+/// let section = Section { young_pa: 2e9, thickness_m: 1e-3, depth_m: 1e-2, poisson: None };
+/// let network = Network {
+///     nodes: vec![
+///         Node { position_m: [0.0, 0.0], support: Support::Clamped },
+///         Node { position_m: [0.1, 0.0], support: Support::Free },
+///     ],
+///     beams: vec![Beam {
+///         start: 0,
+///         end: 1,
+///         shape: Shape::new(vec![0.0], 0.1)?,
+///         section,
+///         start_joint: Joint::Rigid,
+///         end_joint: Joint::Rigid,
+///     }],
+///     drive: Drive::Rotation { node: 1 },
+/// };
+/// let settings = Settings { theory: Theory::Inextensible, ..Settings::default() };
+/// let path = trace(&network, &[std::f64::consts::PI], &settings, &mut |_| true)?;
+/// assert!(path.status.is_complete());
+/// let end = &path.points[0];
+/// let moment = std::f64::consts::PI * section.bending_stiffness_n_m2() / 0.1;
+/// assert!((end.force / moment - 1.0).abs() < 1e-10);
+/// assert!((end.nodes[1].displacement_m[1] - 0.2 / std::f64::consts::PI).abs() < 1e-10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn trace(
+    network: &Network,
+    stations: &[f64],
+    settings: &Settings,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> Result<Path, NetworkError> {
+    network.check()?;
+    let accuracy = settings.accuracy;
+    if !(accuracy > 0.0 && accuracy < 1.0) {
+        return Err(NetworkError::Accuracy { accuracy });
+    }
+    check_stations(stations)?;
+    let model = Arc::new(Model::new(network, settings.theory));
+    let mut counters = Counters::default();
+    let mut coarser: Option<(Run, Arc<Resolution>)> = None;
+    let mut error_estimate = None;
+    for (level, &degree) in DEGREES.iter().enumerate() {
+        let resolution = Arc::new(Resolution::new(&model, degree));
+        // Half of what is left for each level: the number of levels is not known beforehand.
+        let (done, share) = (1.0 - halves(level), halves(level + 1));
+        let mut part = |fraction: f64| progress(done + share * fraction);
+        let run = Stepper::new(&model, &resolution, settings.iteration_limit, &mut counters, &mut part).run(stations);
+        let ended = matches!(
+            run.status,
+            Status::Stopped { .. } | Status::IterationLimit { .. } | Status::OverConstrained { .. } | Status::Mechanism { .. }
+        );
+        if let Some((before, _)) = &coarser {
+            error_estimate = Some(difference(&model, &before.points, &run.points));
+        }
+        let agree = coarser.as_ref().is_some_and(|(before, _)| same_end(&before.status, &run.status));
+        let last = level + 1 == DEGREES.len();
+        if ended || last || (agree && error_estimate.is_some_and(|e| e <= accuracy)) {
+            return Ok(finish(model, (run, resolution), coarser, error_estimate, accuracy, counters));
+        }
+        coarser = Some((run, resolution));
+    }
+    unreachable!("the last level returns")
+}
+
+/// 2⁻ⁿ.
+fn halves(n: usize) -> f64 {
+    (0..n).fold(1.0, |product, _| 0.5 * product)
+}
+
+fn check_stations(stations: &[f64]) -> Result<(), NetworkError> {
+    let mut before = -1.0;
+    for (index, &s) in stations.iter().enumerate() {
+        // Written so that NaN fails. The first may be 0.
+        if !(s.is_finite() && s > before && s >= 0.0) {
+            return Err(NetworkError::Stations { index });
+        }
+        before = s;
+    }
+    Ok(())
+}
+
+/// Builds the answer from the finest run, or from the one before if the finest was cut short.
+fn finish(
+    model: Arc<Model>,
+    finest: (Run, Arc<Resolution>),
+    coarser: Option<(Run, Arc<Resolution>)>,
+    error_estimate: Option<f64>,
+    accuracy: f64,
+    counters: Counters,
+) -> Path {
+    let status = match finest.0.status {
+        Status::Complete => match error_estimate {
+            Some(e) if e <= accuracy => Status::Complete,
+            other => Status::NotResolved { error_estimate: other.unwrap_or(f64::INFINITY), accuracy },
+        },
+        other => other,
+    };
+    let cut_short = matches!(status, Status::Stopped { .. } | Status::IterationLimit { .. });
+    let (run, resolution) = match coarser {
+        Some(before) if cut_short && before.0.knots.len() > finest.0.knots.len() => before,
+        _ => finest,
+    };
+    Path { points: run.points, status, error_estimate, degree: resolution.degree, counters, model, resolution, knots: Arc::new(run.knots) }
+}
+
+/// Whether two resolutions ended alike.
+fn same_end(a: &Status, b: &Status) -> bool {
+    match (a, b) {
+        (Status::Complete, Status::Complete) => true,
+        (Status::NoEquilibriumBeyond { control: a }, Status::NoEquilibriumBeyond { control: b })
+        | (Status::StepTooSmall { control: a }, Status::StepTooSmall { control: b }) => (a - b).abs() <= 1e-4 * a.abs().max(b.abs()),
+        _ => false,
+    }
+}
+
+/// Largest difference of force and of the largest stress of a beam over the common stations, relative to the largest of the path.
+fn difference(model: &Model, coarse: &[Point], fine: &[Point]) -> f64 {
+    // Below this a force is rounding: a network that moves freely is resolved.
+    let (mut largest_force, mut largest_stress) = (1e-9 * model.reaction_unit(), f64::MIN_POSITIVE);
+    let (mut force, mut stress) = (0.0_f64, 0.0_f64);
+    for (a, b) in coarse.iter().zip(fine) {
+        force = larger(force, (a.force - b.force).abs());
+        // Under force control the displacement carries the error.
+        force = larger(force, (a.stiffness * (a.displacement - b.displacement)).abs());
+        largest_force = largest_force.max(b.force.abs());
+        for (a, b) in a.beams.iter().zip(&b.beams) {
+            let (a, b) = (a.peak_stress().stress_pa, b.peak_stress().stress_pa);
+            stress = larger(stress, (a - b).abs());
+            largest_stress = largest_stress.max(b);
+        }
+    }
+    // At rest, stress is rounding too.
+    if fine.iter().all(|p| p.control == 0.0) {
+        return 0.0;
+    }
+    larger(force / largest_force, stress / largest_stress)
+}
+
+/// Maximum that keeps NaN.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
+impl Path {
+    /// The largest control reached, in the unit of the drive.
+    pub fn reach(&self) -> f64 {
+        self.knots.last().map_or(0.0, |k| k.control * self.model.control_unit())
+    }
+
+    /// The exact equilibrium at any control between 0 and [`Path::reach`].
+    ///
+    /// # Errors
+    /// [`PathError`] outside that range, or if the equations do not converge (next to a limit point).
+    pub fn at(&self, control: f64) -> Result<Point, PathError> {
+        let reached = self.reach();
+        // Written so that NaN fails.
+        if self.knots.is_empty() || !(control >= 0.0 && control <= reached * (1.0 + 4.0 * f64::EPSILON)) {
+            return Err(PathError::OutOfReach { control, reached });
+        }
+        let wanted = control / self.model.control_unit();
+        let after = self.knots.partition_point(|k| k.control < wanted).clamp(1, self.knots.len().max(2) - 1);
+        let guess = match (self.knots.get(after - 1), self.knots.get(after)) {
+            (Some(a), Some(b)) => interpolate(a, b, wanted),
+            (Some(a), None) => a.state.clone(),
+            _ => return Err(PathError::OutOfReach { control, reached }),
+        };
+        let mut counters = Counters::default();
+        let mut go_on = |_: f64| true;
+        let mut stepper = Stepper::new(&self.model, &self.resolution, u64::MAX, &mut counters, &mut go_on);
+        stepper.solve_near(guess, wanted, control).ok_or(PathError::NotConverged { control })
+    }
+}

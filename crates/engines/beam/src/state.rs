@@ -1,0 +1,306 @@
+//! Equilibrium states: what happened to the nodes and inside the beams.
+
+use std::sync::Arc;
+
+use forcewright_base::{
+    maths,
+    quadrature::{GaussLegendre, legendre_values},
+    roots,
+};
+
+use crate::{
+    element::root_of,
+    network::{Beam, Theory},
+    section::Section,
+    shape::Shape,
+};
+
+/// One equilibrium on a path.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Value of the control: m, rad, N or N·m after the drive.
+    pub control: f64,
+    /// Displacement of the driven node along the drive, m, or its rotation, rad.
+    pub displacement: f64,
+    /// Force on the driven node along the drive, N, or moment, N·m: the derivative of the energy by the displacement, so positive
+    /// where the network pushes back.
+    pub force: f64,
+    /// Its derivative by the displacement, N/m or N·m/rad, from the tangent of the equations.
+    pub stiffness: f64,
+    /// Strain energy, J.
+    pub energy_j: f64,
+    /// The nodes, in the order of the network.
+    pub nodes: Vec<NodeState>,
+    /// The beams, in the order of the network.
+    pub beams: Vec<BeamState>,
+}
+
+impl Point {
+    /// The beam with the largest stress, and that stress; `None` never happens for a point of a path.
+    pub fn peak_stress(&self) -> Option<(usize, PeakStress)> {
+        let peaks = self.beams.iter().map(BeamState::peak_stress).enumerate();
+        // The first of equals, for the same answer everywhere.
+        peaks.reduce(|best, next| if next.1.stress_pa > best.1.stress_pa { next } else { best })
+    }
+}
+
+/// Motion of a node from rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeState {
+    /// Displacement, m.
+    pub displacement_m: [f64; 2],
+    /// Rotation of the beams joined rigidly to it, rad, counter-clockwise, not reduced to one turn; 0 if every joint is a hinge.
+    pub rotation_rad: f64,
+}
+
+/// A face of a beam, seen along the direction from its start to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Face {
+    /// To the left.
+    Left,
+    /// To the right.
+    Right,
+}
+
+/// The largest stress of a beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeakStress {
+    /// Its magnitude, Pa.
+    pub stress_pa: f64,
+    /// Where along the beam, in [0, 1].
+    pub u: f64,
+    /// On which face; under pure bending both are equal and the one in tension is named.
+    pub face: Face,
+    /// Whether it is a tension.
+    pub tension: bool,
+}
+
+/// What does not change along a path.
+#[derive(Debug)]
+pub(crate) struct BeamInfo {
+    pub(crate) shape: Shape,
+    section: Section,
+    theory: Theory,
+    start_m: [f64; 2],
+}
+
+impl BeamInfo {
+    pub(crate) fn new(start_m: [f64; 2], beam: &Beam, theory: Theory) -> Self {
+        Self { shape: beam.shape.clone(), section: beam.section, theory, start_m }
+    }
+}
+
+/// Places at which every beam is searched for its largest stress, with the trial functions there.
+#[derive(Debug)]
+pub(crate) struct Sampling {
+    u: Vec<f64>,
+    /// Row per place: slopes of the modes.
+    slopes: Vec<f64>,
+    /// Row per place: values of the modes.
+    values: Vec<f64>,
+    modes: usize,
+    pub(crate) rule: Arc<GaussLegendre>,
+}
+
+impl Sampling {
+    /// Chebyshev points, twice as many as modes, so that no extremum of their sum falls between two of them unseen.
+    pub(crate) fn new(modes: usize, rule: Arc<GaussLegendre>) -> Self {
+        let intervals = 2 * modes;
+        let u: Vec<f64> = (0..=intervals).map(|i| 0.5 - 0.5 * maths::cos(std::f64::consts::PI * i as f64 / intervals as f64)).collect();
+        let mut p = vec![0.0; modes + 2];
+        let (mut slopes, mut values) = (Vec::new(), Vec::new());
+        for &u in &u {
+            legendre_values(2.0 * u - 1.0, &mut p);
+            slopes.extend((2..modes + 2).map(|k| root_of(k) * p[k - 1]));
+            values.extend((2..modes + 2).map(|k| (p[k] - p[k - 2]) / (2.0 * root_of(k))));
+        }
+        Self { u, slopes, values, modes, rule }
+    }
+}
+
+/// One beam in equilibrium.
+#[derive(Debug, Clone)]
+pub struct BeamState {
+    /// Force (H, V) of the part beyond a section on the part before it, N: constant along the beam. Its component along the beam is
+    /// positive in tension; the beam pulls its start node by (H, V) and its end node by (−H, −V).
+    pub force_n: [f64; 2],
+    /// Bending moment at u = 0, N·m; positive where it adds curvature to the left.
+    pub start_moment_nm: f64,
+    /// Bending moment at u = 1, N·m.
+    pub end_moment_nm: f64,
+    /// Rotation of the section at u = 0, rad.
+    pub start_rotation_rad: f64,
+    /// Rotation of the section at u = 1, rad.
+    pub end_rotation_rad: f64,
+    /// Amplitudes `a_2`, `a_3`, … of the rotation φ = `φ_A` (1 − u) + `φ_B` u + Σ `a_k` (`P_k` − `P_{k−2}`)/(2 √(2k−1)) with Legendre
+    /// polynomials of 2u − 1, rad.
+    pub modes_rad: Vec<f64>,
+    start_displacement_m: [f64; 2],
+    peak: PeakStress,
+    info: Arc<BeamInfo>,
+    rule: Arc<GaussLegendre>,
+}
+
+/// Raw results for [`BeamState::new`].
+pub(crate) struct Solved {
+    pub(crate) force_n: [f64; 2],
+    pub(crate) ends: [f64; 2],
+    pub(crate) modes: Vec<f64>,
+    pub(crate) start_displacement_m: [f64; 2],
+}
+
+impl BeamState {
+    pub(crate) fn new(solved: Solved, info: &Arc<BeamInfo>, sampling: &Sampling) -> Self {
+        let mut state = Self {
+            force_n: solved.force_n,
+            start_moment_nm: 0.0,
+            end_moment_nm: 0.0,
+            start_rotation_rad: solved.ends[0],
+            end_rotation_rad: solved.ends[1],
+            modes_rad: solved.modes,
+            start_displacement_m: solved.start_displacement_m,
+            peak: PeakStress { stress_pa: 0.0, u: 0.0, face: Face::Left, tension: false },
+            info: Arc::clone(info),
+            rule: Arc::clone(&sampling.rule),
+        };
+        state.start_moment_nm = state.moment_nm(0.0);
+        state.end_moment_nm = state.moment_nm(1.0);
+        state.peak = state.find_peak(sampling);
+        state
+    }
+
+    /// Rotation φ(u) and its slope dφ/du, rad.
+    fn rotation_and_slope(&self, u: f64) -> (f64, f64) {
+        let x = 2.0 * u - 1.0;
+        let turn = self.end_rotation_rad - self.start_rotation_rad;
+        let (mut value, mut slope) = (self.start_rotation_rad + turn * u, turn);
+        let (mut before, mut here) = (1.0, x);
+        for (i, a) in self.modes_rad.iter().enumerate() {
+            let k = (i + 2) as f64;
+            let next = ((2.0 * k - 1.0) * x * here - (k - 1.0) * before) / k;
+            let root = root_of(i + 2);
+            value += a * (next - before) / (2.0 * root);
+            slope += a * root * here;
+            (before, here) = (here, next);
+        }
+        (value, slope)
+    }
+
+    fn bending_stiffness_nm(&self) -> f64 {
+        self.info.section.bending_stiffness_n_m2() / self.info.shape.length_m()
+    }
+
+    /// Rotation of the section at u in [0, 1] from rest, rad.
+    pub fn rotation_rad(&self, u: f64) -> f64 {
+        self.rotation_and_slope(u).0
+    }
+
+    /// Deformed angle θ(u) = η(u) + φ(u), rad.
+    pub fn angle_rad(&self, u: f64) -> f64 {
+        self.info.shape.angle_at(u) + self.rotation_rad(u)
+    }
+
+    /// Bending moment M(u) = EI/L dφ/du, N·m; positive where it adds curvature to the left.
+    ///
+    /// Departure COMP-1 from Lan, Wang & Chen 2010: their eq. (4) lacks the 1/L that their eq. (5) has.
+    pub fn moment_nm(&self, u: f64) -> f64 {
+        self.bending_stiffness_nm() * self.rotation_and_slope(u).1
+    }
+
+    /// Axial force N(u), N; positive in tension.
+    pub fn axial_force_n(&self, u: f64) -> f64 {
+        let (sin, cos) = maths::sin_cos(self.angle_rad(u));
+        self.force_n[0] * cos + self.force_n[1] * sin
+    }
+
+    /// Shear force Q(u), N; the component of the force to the left of the beam.
+    pub fn shear_force_n(&self, u: f64) -> f64 {
+        let (sin, cos) = maths::sin_cos(self.angle_rad(u));
+        self.force_n[1] * cos - self.force_n[0] * sin
+    }
+
+    /// Deformed position of the axis at u in [0, 1], m, in the frame of the network.
+    pub fn shape_m(&self, u: f64) -> [f64; 2] {
+        let u = if u.is_nan() { 0.0 } else { u.clamp(0.0, 1.0) };
+        let section = &self.info.section;
+        let (axial, shear) = match self.info.theory {
+            Theory::Inextensible => (0.0, 0.0),
+            Theory::Reissner => (1.0 / section.axial_stiffness_n(), 1.0 / section.shear_stiffness_n()),
+        };
+        let length = self.info.shape.length_m() * u;
+        let mut point = [0, 1].map(|i| self.info.start_m[i] + self.start_displacement_m[i]);
+        for (&node, &weight) in self.rule.nodes().iter().zip(self.rule.weights()) {
+            let (sin, cos) = maths::sin_cos(self.angle_rad(node * u));
+            let stretch = 1.0 + axial * (self.force_n[0] * cos + self.force_n[1] * sin);
+            let slide = shear * (self.force_n[1] * cos - self.force_n[0] * sin);
+            point[0] += length * weight * (stretch * cos - slide * sin);
+            point[1] += length * weight * (stretch * sin + slide * cos);
+        }
+        point
+    }
+
+    /// Stress along the beam on the left and right face at u, Pa, tension positive: N/A ∓ M w/(2 I).
+    ///
+    /// Lan, Wang & Chen 2010, eq. (5), which has the bending term only: so has [`Theory::Inextensible`]. The shift of the neutral
+    /// axis in strongly curved beams is neglected.
+    pub fn stress_pa(&self, u: f64) -> [f64; 2] {
+        let (rotation, slope) = self.rotation_and_slope(u);
+        self.face_stress(u, rotation, slope)
+    }
+
+    fn face_stress(&self, u: f64, rotation: f64, slope: f64) -> [f64; 2] {
+        let section = &self.info.section;
+        let bending = self.bending_stiffness_nm() * slope * section.face_stress_per_moment_per_m3();
+        let axial = match self.info.theory {
+            Theory::Inextensible => 0.0,
+            Theory::Reissner => {
+                let (sin, cos) = maths::sin_cos(self.info.shape.angle_at(u) + rotation);
+                (self.force_n[0] * cos + self.force_n[1] * sin) / section.area_m2()
+            }
+        };
+        [axial - bending, axial + bending]
+    }
+
+    /// The largest stress magnitude over both faces and the whole length, ends included.
+    pub fn peak_stress(&self) -> PeakStress {
+        self.peak
+    }
+
+    fn find_peak(&self, sampling: &Sampling) -> PeakStress {
+        let count = sampling.u.len();
+        let turn = self.end_rotation_rad - self.start_rotation_rad;
+        let mut samples: [Vec<f64>; 2] = [Vec::with_capacity(count), Vec::with_capacity(count)];
+        let dot = |row: &[f64]| -> f64 { row.iter().zip(&self.modes_rad).map(|(r, a)| r * a).sum() };
+        let rows = sampling.slopes.chunks_exact(sampling.modes).zip(sampling.values.chunks_exact(sampling.modes));
+        for (&u, (slopes, values)) in sampling.u.iter().zip(rows) {
+            let rotation = self.start_rotation_rad + turn * u + dot(values);
+            let stress = self.face_stress(u, rotation, turn + dot(slopes));
+            samples[0].push(stress[0].abs());
+            samples[1].push(stress[1].abs());
+        }
+        let largest = samples.iter().flatten().fold(0.0_f64, |m, v| m.max(*v));
+        let mut best = (0.0, 0.0);
+        let faces = if self.info.theory == Theory::Inextensible { 1 } else { 2 };
+        for (face, values) in samples.iter().enumerate().take(faces) {
+            for i in 0..count {
+                let left = values[i.saturating_sub(1)];
+                let right = values[(i + 1).min(count - 1)];
+                if values[i] < left || values[i] < right || values[i] < 0.9 * largest {
+                    continue;
+                }
+                if values[i] > best.0 {
+                    best = (values[i], sampling.u[i]);
+                }
+                let (a, b) = (sampling.u[i.saturating_sub(1)], sampling.u[(i + 1).min(count - 1)]);
+                let refined = roots::minimise(|u| -self.stress_pa(u)[face].abs(), a, b, 1e-7);
+                if -refined.value > best.0 {
+                    best = (-refined.value, refined.x);
+                }
+            }
+        }
+        let [left, right] = self.stress_pa(best.1);
+        let face = if left.abs() > right.abs() || (left.abs() >= right.abs() && left > 0.0) { Face::Left } else { Face::Right };
+        let tension = if face == Face::Left { left > 0.0 } else { right > 0.0 };
+        PeakStress { stress_pa: best.0, u: best.1, face, tension }
+    }
+}

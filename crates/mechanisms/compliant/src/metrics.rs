@@ -1,0 +1,48 @@
+//! Names of the metrics: stable, so that requirements, studies and scripts agree.
+
+use forcewright_base::units::Dimension;
+
+/// What is said once about a metric.
+#[derive(Debug)]
+pub struct MetricInfo {
+    /// Stable name.
+    pub name: &'static str,
+    /// Quantity.
+    pub dimension: Dimension,
+    /// One sentence.
+    pub doc: &'static str,
+    /// Whether the command line prints it.
+    pub key: bool,
+}
+
+const fn metric(name: &'static str, dimension: Dimension, key: bool, doc: &'static str) -> MetricInfo {
+    MetricInfo { name, dimension, doc, key }
+}
+
+/// Every metric of the family, in the order of results.
+pub const METRICS: &[MetricInfo] = &[
+    metric("force_at_end", Dimension::Force, true, "Force F(d) at the full travel, whole layout."),
+    metric("range_start", Dimension::Length, true, "The paper's c: last displacement before d where F rises through 0.95·F(d)."),
+    metric("range_ratio", Dimension::Ratio, true, "The paper's operational range over the travel, (d − c)/d."),
+    metric("flat_start", Dimension::Length, false, "Start of the longest interval with max F/min F ≤ (1 + β)/(1 − β), level free."),
+    metric("flat_end", Dimension::Length, false, "End of that interval."),
+    metric("flat_ratio", Dimension::Ratio, true, "Length of that interval over the travel."),
+    metric("flat_force", Dimension::Force, true, "Middle of the force over that interval."),
+    metric("band_start", Dimension::Length, true, "Start of the longest interval inside the band around the nominal force."),
+    metric("band_end", Dimension::Length, true, "End of that interval."),
+    metric("band_ratio", Dimension::Ratio, true, "Length of that interval over the travel."),
+    metric("force_local_max", Dimension::Force, false, "First local maximum of the force."),
+    metric("force_local_max_at", Dimension::Length, false, "Its displacement."),
+    metric("force_local_min", Dimension::Force, false, "First local minimum of the force after that maximum."),
+    metric("force_local_min_at", Dimension::Length, false, "Its displacement."),
+    metric("stiffness_initial", Dimension::Stiffness, false, "Slope dF/dΔ at rest."),
+    metric("stiffness_min", Dimension::Stiffness, true, "Least slope dF/dΔ over the travel."),
+    metric("stress_max", Dimension::Stress, true, "Largest stress over all beams, both faces, the whole travel."),
+    metric("safety_factor", Dimension::Ratio, true, "Yield stress over the largest stress."),
+    metric("travel_at_allowable_stress", Dimension::Length, false, "Displacement at which the stress first reaches what is allowed."),
+    metric("energy_at_end", Dimension::Energy, false, "Elastic energy at the full travel, whole layout."),
+    metric("mass", Dimension::Mass, false, "Mass of the beams, whole layout, without blocks."),
+    metric("length_ratio_max", Dimension::Ratio, false, "Largest arc length of a beam over its chord."),
+    metric("clearance_min", Dimension::Length, false, "Smallest distance between beam surfaces over the travel, outside the joints that they share."),
+    metric("envelope_margin", Dimension::Length, false, "Smallest distance of the mechanism to its envelope over the travel."),
+];

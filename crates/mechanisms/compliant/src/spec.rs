@@ -1,0 +1,345 @@
+//! The project file of a compliant mechanism as it is typed: every parameter is described here, once.
+
+use forcewright_base::units::{Dimension, Quantity};
+use forcewright_contract::describe::{Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
+use forcewright_contract::header::Header;
+
+use crate::metrics::METRICS;
+
+/// Everything that a project file can say.
+#[derive(Debug, Default)]
+pub struct Spec {
+    pub header: Header,
+    pub requirements: Section<Requirements>,
+    pub material: Section<Material>,
+    pub process: Section<Process>,
+    pub design: Section<Design>,
+    pub layout: Section<Layout>,
+    pub load: Section<Load>,
+    pub model: Section<Model>,
+}
+
+/// What the mechanism must do.
+#[derive(Debug, Default)]
+pub struct Requirements {
+    pub force: Section<ForceRequirement>,
+    pub travel: Slot<Quantity>,
+    pub stress: Section<StressRequirement>,
+    pub stiffness: Section<StiffnessRequirement>,
+    pub limits: Section<Limits>,
+}
+
+/// A force level and how far from it the force may be.
+#[derive(Debug, Default)]
+pub struct ForceRequirement {
+    pub nominal: Slot<Quantity>,
+    pub band: Slot<Quantity>,
+}
+
+/// How much stress is allowed.
+#[derive(Debug, Default)]
+pub struct StressRequirement {
+    pub safety_factor: Slot<Quantity>,
+    pub max: Slot<Quantity>,
+}
+
+/// Which slopes of the force are allowed.
+#[derive(Debug, Default)]
+pub struct StiffnessRequirement {
+    pub min: Slot<Quantity>,
+    pub max: Slot<Quantity>,
+}
+
+/// Bounds on metrics, in the order of [`METRICS`].
+#[derive(Debug)]
+pub struct Limits {
+    pub bounds: Vec<Section<Bounds>>,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        let bounds = METRICS.iter().map(|info| Section { present: None, body: Bounds { dimension: info.dimension, min: None, max: None } });
+        Self { bounds: bounds.collect() }
+    }
+}
+
+/// A smallest and a largest value of a metric.
+#[derive(Debug)]
+pub struct Bounds {
+    dimension: Dimension,
+    pub min: Slot<Quantity>,
+    pub max: Slot<Quantity>,
+}
+
+/// What the beams are made of.
+#[derive(Debug, Default)]
+pub struct Material {
+    pub catalogue: Slot<String>,
+    pub young_modulus: Slot<Quantity>,
+    pub poisson_ratio: Slot<Quantity>,
+    pub yield_stress: Slot<Quantity>,
+    pub density: Slot<Quantity>,
+}
+
+/// How it is made.
+#[derive(Debug, Default)]
+pub struct Process {
+    method: Slot<&'static str>,
+    cutter_diameter: Slot<Quantity>,
+}
+
+/// The flexure network.
+#[derive(Debug, Default)]
+pub struct Design {
+    pub thickness: Slot<Quantity>,
+    pub depth: Slot<Quantity>,
+    pub nodes: Vec<Member<Node>>,
+    pub beams: Vec<Member<Beam>>,
+}
+
+/// A node.
+#[derive(Clone, Debug, Default)]
+pub struct Node {
+    pub at: Slot<[Quantity; 2]>,
+    pub support: Slot<&'static str>,
+    pub direction: Slot<[f64; 2]>,
+    pub rotation: Slot<&'static str>,
+}
+
+/// A beam.
+#[derive(Clone, Debug, Default)]
+pub struct Beam {
+    pub between: Slot<Vec<Located<String>>>,
+    pub bend: Slot<Vec<f64>>,
+    pub straight: Slot<bool>,
+    pub arc: Slot<Quantity>,
+    pub angle: Slot<Vec<f64>>,
+    pub length: Slot<Quantity>,
+    pub thickness: Slot<Quantity>,
+    pub hinged: Slot<Vec<Located<String>>>,
+}
+
+/// Copies of the drawn network.
+#[derive(Debug, Default)]
+pub struct Layout {
+    pub mirror: Slot<String>,
+}
+
+/// What happens to it.
+#[derive(Debug, Default)]
+pub struct Load {
+    pub node: Slot<String>,
+    pub direction: Slot<[f64; 2]>,
+    pub travel: Slot<Quantity>,
+}
+
+/// Which equations are solved, and how well.
+#[derive(Debug, Default)]
+pub struct Model {
+    pub beam: Slot<&'static str>,
+    pub joints: Slot<&'static str>,
+    pub accuracy: Slot<Quantity>,
+}
+
+/// Supports of a node.
+pub const SUPPORTS: &[Word] = &[
+    Word { word: "clamped", doc: "position and rotation fixed" },
+    Word { word: "pinned", doc: "position fixed, free to rotate" },
+    Word { word: "slider", doc: "moves along `direction`" },
+];
+/// Rotation of a slider.
+pub const ROTATIONS: &[Word] = &[Word { word: "fixed", doc: "keeps its angle" }, Word { word: "free", doc: "turns freely" }];
+/// Beam models.
+pub const BEAM_MODELS: &[Word] = &[
+    Word { word: "reissner", doc: "geometrically exact: bending, stretching and shear" },
+    Word { word: "inextensible", doc: "bending only, as in the paper" },
+];
+/// Models of joints.
+pub const JOINT_MODELS: &[Word] = &[
+    Word { word: "point", doc: "beams meet at points" },
+    Word { word: "overlap", doc: "rigid zones where beams of finite thickness meet" },
+];
+/// Ways of making it.
+pub const METHODS: &[Word] = &[
+    Word { word: "milling", doc: "milled from sheet" },
+    Word { word: "laser", doc: "laser cut" },
+    Word { word: "waterjet", doc: "waterjet cut" },
+    Word { word: "wire-edm", doc: "wire eroded" },
+    Word { word: "printing", doc: "printed in layers" },
+    Word { word: "moulding", doc: "injection moulded" },
+];
+
+const LARGEST_M: f64 = 10.0;
+
+const STUDY: &str = "it belongs to a study that this version does not have; `solve` does not need it";
+const RESERVED_SECTIONS: &[Reserved] = &[
+    Reserved { key: "optimise", instead: STUDY, ignored: true },
+    Reserved { key: "tolerance", instead: STUDY, ignored: true },
+    Reserved { key: "measurements", instead: STUDY, ignored: true },
+    Reserved { key: "calibrate", instead: STUDY, ignored: true },
+    Reserved { key: "scenario", instead: "scenarios are not available yet; `solve` gives the force over the displacement", ignored: true },
+    Reserved { key: "environment", instead: "compliant mechanisms are solved without gravity, at the temperature of the material data", ignored: true },
+    Reserved { key: "errors", instead: "errors of making are not available yet; change the parameter itself", ignored: false },
+];
+const RESERVED_NODE: &[Reserved] =
+    &[Reserved { key: "on", instead: "it restricts an optimiser, which this version does not have; `solve` does not need it", ignored: true }];
+const RESERVED_BEAM: &[Reserved] = &[
+    Reserved { key: "through", instead: "give the shape by `bend`, `arc`, `straight`, or `angle` with `length`", ignored: false },
+    Reserved { key: "material", instead: "all beams are of `[material]` in this version", ignored: false },
+];
+const RESERVED_LAYOUT: &[Reserved] = &[
+    Reserved { key: "array", instead: "draw every copy, or use `mirror`", ignored: false },
+    Reserved { key: "circular", instead: "draw every copy, or use `mirror`", ignored: false },
+    Reserved { key: "series", instead: "layers in series add their travels at equal force", ignored: false },
+];
+const RESERVED_LOAD: &[Reserved] = &[
+    Reserved { key: "force", instead: "prescribe `travel`; the force is the result", ignored: false },
+    Reserved { key: "moment", instead: "prescribe `travel`", ignored: false },
+    Reserved { key: "rotation", instead: "prescribe `travel`", ignored: false },
+];
+const RESERVED_REQUIREMENTS: &[Reserved] =
+    &[Reserved { key: "envelope", instead: "the envelope is not assessed in this version", ignored: false }];
+
+impl Describe for Spec {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        self.header.describe(v);
+        self.requirements.describe(v, &Param::new("requirements", "What the mechanism must do. Tested, never changed by a study."));
+        self.material.describe(v, &Param::new("material", "What the beams are made of.").required());
+        self.process.describe(v, &Param::new("process", "How it is made. Recorded; not used by the force analysis."));
+        self.design.describe(v, &Param::new("design", "The flexure network.").required());
+        self.layout.describe(v, &Param::new("layout", "Copies of the drawn network; force, energy and pictures follow."));
+        self.load.describe(v, &Param::new("load", "What happens to it.").required());
+        self.model.describe(v, &Param::new("model", "Which equations are solved, and how well."));
+        v.reserved(RESERVED_SECTIONS);
+    }
+}
+
+impl Describe for Requirements {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        self.force.describe(v, &Param::new("force", "Level and band of the force."));
+        v.quantity(
+            &Param::new("travel", "Usable stroke: shortest displacement over which the force must stay inside the band.").of(Dimension::Length).above(0.0, LARGEST_M),
+            &mut self.travel,
+        );
+        self.stress.describe(v, &Param::new("stress", "Stress allowed over the whole travel."));
+        self.stiffness.describe(v, &Param::new("stiffness", "Slope dF/dΔ over the whole travel; without this section, no negative stiffness."));
+        self.limits.describe(v, &Param::new("limits", "Limits on any metric, by its name."));
+        v.reserved(RESERVED_REQUIREMENTS);
+    }
+}
+
+impl Describe for ForceRequirement {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.quantity(&Param::new("nominal", "Force level; without it the level is free.").of(Dimension::Force).above(0.0, 1e6), &mut self.nominal);
+        v.quantity(&Param::new("band", "Half width β of the band, relative to the level.").above(0.0, 0.9).required(), &mut self.band);
+    }
+}
+
+impl Describe for StressRequirement {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.quantity(&Param::new("safety_factor", "Yield stress over the largest stress.").within(0.1, 100.0), &mut self.safety_factor);
+        v.quantity(&Param::new("max", "Largest stress, instead of a safety factor.").of(Dimension::Stress).above(0.0, 1e12), &mut self.max);
+    }
+}
+
+impl Describe for StiffnessRequirement {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let slope = |key, doc| Param::new(key, doc).of(Dimension::Stiffness).within(-1e12, 1e12);
+        v.quantity(&slope("min", "Least slope; negative stiffness makes a force-driven device jump.").default("0 N/m"), &mut self.min);
+        v.quantity(&slope("max", "Largest slope."), &mut self.max);
+    }
+}
+
+impl Describe for Limits {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        for (info, bounds) in METRICS.iter().zip(&mut self.bounds) {
+            bounds.describe(v, &Param::new(info.name, info.doc));
+        }
+    }
+}
+
+impl Describe for Bounds {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.quantity(&Param::new("min", "Smallest value.").of(self.dimension), &mut self.min);
+        v.quantity(&Param::new("max", "Largest value.").of(self.dimension), &mut self.max);
+    }
+}
+
+impl Describe for Material {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.text(&Param::new("use", "Entry of the material catalogue; the keys below override its values."), &mut self.catalogue);
+        v.quantity(&Param::new("young_modulus", "Young's modulus E.").of(Dimension::Stress).above(0.0, 1e13), &mut self.young_modulus);
+        v.quantity(&Param::new("poisson_ratio", "Poisson's ratio ν; only the shear of the Reissner model uses it.").within(0.0, 0.5), &mut self.poisson_ratio);
+        v.quantity(&Param::new("yield_stress", "Yield stress σ_y.").of(Dimension::Stress).above(0.0, 1e11), &mut self.yield_stress);
+        v.quantity(&Param::new("density", "Density.").of(Dimension::Density).above(0.0, 3e4), &mut self.density);
+    }
+}
+
+impl Describe for Process {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.choice(&Param::new("method", "How it is made."), METHODS, &mut self.method);
+        v.quantity(&Param::new("cutter_diameter", "Diameter of the cutter: twice the smallest inner radius.").of(Dimension::Length).above(0.0, 0.1), &mut self.cutter_diameter);
+    }
+}
+
+impl Describe for Design {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let thickness = |doc| Param::new("thickness", doc).of(Dimension::Length).above(0.0, 1.0);
+        v.quantity(&thickness("In-plane thickness w of all beams that do not give their own."), &mut self.thickness);
+        v.quantity(&Param::new("depth", "Out-of-plane depth t of all beams.").of(Dimension::Length).above(0.0, LARGEST_M).required(), &mut self.depth);
+        v.members(&Param::new("nodes", "Where beams meet and where the ground holds them.").required(), Form::Table, &mut self.nodes);
+        v.members(&Param::new("beams", "Flexible beams.").required(), Form::List, &mut self.beams);
+    }
+}
+
+impl Describe for Node {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let coordinate = Param::new("at", "Position [x, y]; may be left out where beams given by `angle` and `length` lead there.");
+        v.point(&coordinate.of(Dimension::Length).within(-LARGEST_M, LARGEST_M), &mut self.at);
+        v.choice(&Param::new("support", "How the ground holds it; without it the node is free."), SUPPORTS, &mut self.support);
+        v.direction(&Param::new("direction", "Direction in which a slider moves."), &mut self.direction);
+        v.choice(&Param::new("rotation", "Whether a slider may turn; fixed by default."), ROTATIONS, &mut self.rotation);
+        v.reserved(RESERVED_NODE);
+    }
+}
+
+impl Describe for Beam {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.names(&Param::new("between", "The two nodes it joins, from u = 0 to u = 1.").required(), 2, 2, &mut self.between);
+        v.numbers(
+            &Param::new("bend", "Coefficients c1…cm of the intrinsic angle η(u) = c0 + c1·u + … in rad; c0 and the length follow from the nodes.").within(-50.0, 50.0),
+            &mut self.bend,
+        );
+        v.flag(&Param::new("straight", "A straight beam."), &mut self.straight);
+        v.quantity(&Param::new("arc", "A circular arc that turns by this angle, counter-clockwise positive.").of(Dimension::Angle).within(-6.2, 6.2), &mut self.arc);
+        v.numbers(&Param::new("angle", "Coefficients c0…cm of the intrinsic angle in rad, with `length`; the nodes then follow.").within(-50.0, 50.0), &mut self.angle);
+        v.quantity(&Param::new("length", "Arc length, with `angle`.").of(Dimension::Length).above(0.0, LARGEST_M), &mut self.length);
+        v.quantity(&Param::new("thickness", "Its own in-plane thickness w.").of(Dimension::Length).above(0.0, 1.0), &mut self.thickness);
+        v.names(&Param::new("hinged", "Ends, by their nodes, that turn freely."), 0, 2, &mut self.hinged);
+        v.reserved(RESERVED_BEAM);
+    }
+}
+
+impl Describe for Layout {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.text(&Param::new("mirror", "Mirror line, `x = 0` or `y = 2 mm`: the mechanism has a mirrored second half."), &mut self.mirror);
+        v.reserved(RESERVED_LAYOUT);
+    }
+}
+
+impl Describe for Load {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.text(&Param::new("node", "The node that is moved.").required(), &mut self.node);
+        v.direction(&Param::new("direction", "Direction of the displacement Δ and of the force F on the mechanism.").required(), &mut self.direction);
+        v.quantity(&Param::new("travel", "Largest displacement d.").of(Dimension::Length).above(0.0, LARGEST_M).required(), &mut self.travel);
+        v.reserved(RESERVED_LOAD);
+    }
+}
+
+impl Describe for Model {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.choice(&Param::new("beam", "Deformations of a beam.").default("reissner"), BEAM_MODELS, &mut self.beam);
+        v.choice(&Param::new("joints", "How beams meet.").default("point"), JOINT_MODELS, &mut self.joints);
+        v.quantity(&Param::new("accuracy", "Error allowed, relative to the largest force on the path.").within(1e-12, 1e-2).default("1e-8"), &mut self.accuracy);
+    }
+}

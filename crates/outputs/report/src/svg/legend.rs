@@ -1,0 +1,89 @@
+//! The legend below a figure.
+
+use super::canvas::{Anchor, Canvas, Style};
+use super::colour::Paint;
+use super::place::Rect;
+use super::text;
+
+const SIZE: f64 = 13.0;
+const ROW: f64 = 19.0;
+const SWATCH: f64 = 34.0;
+const GAP: f64 = 26.0;
+
+/// What stands before a legend text.
+#[derive(Clone, Debug)]
+pub(super) enum Swatch {
+    /// A line with a dash pattern (empty is solid) and small squares on it or not.
+    Line { paint: Paint, width: f64, dash: &'static str, squares: bool },
+    /// A hatched region.
+    Band,
+    /// A marked point.
+    Point,
+}
+
+/// One entry.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub(super) swatch: Swatch,
+    pub(super) text: String,
+}
+
+/// Draws entries in rows from `top` between `left` and `right`; returns where the next thing may start.
+pub(super) fn draw(canvas: &mut Canvas, entries: &[Entry], left: f64, right: f64, top: f64) -> f64 {
+    let style = Style::plain(SIZE);
+    let (mut x, mut y) = (left, top);
+    for entry in entries {
+        let lines = text::wrap(&entry.text, SIZE, right - left - SWATCH - 8.0);
+        let width = SWATCH + 8.0 + lines.iter().map(|l| style.width(l)).fold(0.0, f64::max);
+        if x > left && (x + width > right || lines.len() > 1) {
+            x = left;
+            y += ROW;
+        }
+        swatch(canvas, &entry.swatch, x, y + 0.5 * ROW);
+        for (i, line) in lines.iter().enumerate() {
+            canvas.text(line, [x + SWATCH + 8.0, y + 14.0 + i as f64 * ROW], Anchor::Start, style);
+        }
+        if lines.len() > 1 {
+            x = left;
+            y += lines.len() as f64 * ROW;
+        } else {
+            x += width + GAP;
+        }
+    }
+    if x > left { y + ROW } else { y }
+}
+
+fn swatch(canvas: &mut Canvas, swatch: &Swatch, x: f64, y: f64) {
+    match swatch {
+        Swatch::Line { paint, width, dash, squares } => {
+            canvas.open_stroke(*paint, *width, &dashed(dash));
+            canvas.polyline(&[[x, y], [x + SWATCH, y]], "");
+            canvas.close();
+            if *squares {
+                let side = 6.0;
+                let r = Rect::sized(x + 0.5 * (SWATCH - side), y - 0.5 * side, side, side);
+                canvas.rect(&r, &paint.attributes("fill"));
+            }
+        }
+        Swatch::Band => band(canvas, &Rect::sized(x, y - 7.0, SWATCH, 14.0)),
+        Swatch::Point => canvas.circle(
+            [x + 0.5 * SWATCH, y],
+            4.5,
+            &format!(r#"{} stroke-width="2""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)),
+        ),
+    }
+}
+
+/// A tinted and hatched region with its edges.
+pub(super) fn band(canvas: &mut Canvas, r: &Rect) {
+    canvas.rect(r, &format!(r#"{} fill-opacity="0.13""#, Paint::Band.attributes("fill")));
+    canvas.open_stroke(Paint::Band, 1.0, "");
+    canvas.hatch(r, 8.0, r#"stroke-opacity="0.45""#);
+    canvas.segments(&[[[r.x0, r.y0], [r.x1, r.y0]], [[r.x0, r.y1], [r.x1, r.y1]]], "");
+    canvas.close();
+}
+
+/// The attribute for a dash pattern; nothing for a solid line.
+pub(super) fn dashed(dash: &str) -> String {
+    if dash.is_empty() { String::new() } else { format!(r#"stroke-dasharray="{dash}""#) }
+}
