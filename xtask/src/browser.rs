@@ -39,7 +39,7 @@ pub(crate) fn run(workspace: &Workspace, folder: &Path, solved: &[Solved], steps
     let job = json!({ "browser": browser, "pages": solved.iter().map(page).collect::<Vec<_>>() });
     let mut command = Command::new(python_name());
     command.current_dir(&workspace.root).arg("xtask/python/browser.py");
-    run_script(&mut command, &folder.join("browser.json"), &job, "browser", Duration::from_secs(1200), steps);
+    run_script(&mut command, &folder.join("browser.json"), &job, "browser", Duration::from_mins(20), steps);
     println!("   pictures and PDF files: {}", pictures.display());
 }
 
@@ -63,7 +63,7 @@ fn install() -> Result<PathBuf, String> {
     let apt = |args: &[&str]| {
         let mut command = Command::new("apt-get");
         command.args(["-o", "DPkg::Lock::Timeout=300"]).args(args).env("DEBIAN_FRONTEND", "noninteractive");
-        output_of(&mut command, Duration::from_secs(900)).map_err(|error| format!("{error}\n{HOW}"))
+        output_of(&mut command, Duration::from_mins(15)).map_err(|error| format!("{error}\n{HOW}"))
     };
     println!("   no Chromium found; installing Debian's");
     apt(&["update"])?;

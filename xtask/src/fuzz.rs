@@ -11,7 +11,7 @@ const TARGET: &str = "project_file";
 
 /// The command `fuzz`.
 pub(crate) fn run(workspace: &Workspace, seconds: u64) -> Result<ExitCode, String> {
-    let limit = Duration::from_secs(60);
+    let limit = Duration::from_mins(1);
     let installed = captured(cargo(workspace).args(["fuzz", "--version"]), limit).is_ok_and(|finished| finished.code == Some(0));
     let mut steps = Steps::default();
     if !installed {

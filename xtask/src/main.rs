@@ -28,8 +28,9 @@ Commands:
   layers [--markdown]  dependencies point down only; --markdown prints the table and graph of the crates
   generate [--check]   write what is generated: schema, reference pages, validation table, picture, crate graph
                        --check only compares, and names what is stale
-  test [--rust | --browser]
-                       everything a fresh machine with Rust and Python 3 can run; or only the Rust tests; or only the browser checks
+  test [--rust] [--examples] [--browser]
+                       everything a fresh machine with Rust and Python 3 can run; with options only the Rust tests,
+                       only the examples as Python reads them, only their reports in a browser
   fuzz [seconds]       feed noise to the reader of project files (60 s by default); needs cargo-fuzz
   help                 this text
 
@@ -102,13 +103,9 @@ fn run(args: &[String]) -> Result<ExitCode, String> {
             Ok(generate::run(&workspace, options.has("--check"), options.binary.as_deref()))
         }
         "test" => {
-            let options = Options::parse(rest, &["--rust", "--browser"], true, 0)?;
-            let only_some = options.has("--rust") || options.has("--browser");
-            let what = test::What {
-                rust: !only_some || options.has("--rust"),
-                examples: !only_some,
-                browser: !only_some || options.has("--browser"),
-            };
+            let options = Options::parse(rest, &["--rust", "--examples", "--browser"], true, 0)?;
+            let wanted = |flag: &str| options.flags.is_empty() || options.has(flag);
+            let what = test::What { rust: wanted("--rust"), examples: wanted("--examples"), browser: wanted("--browser") };
             Ok(test::run(&workspace, what, options.binary.as_deref()))
         }
         "fuzz" => {

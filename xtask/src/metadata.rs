@@ -44,7 +44,7 @@ pub(crate) fn cargo(workspace: &Workspace) -> Command {
 /// When cargo cannot be run or says something unexpected.
 pub(crate) fn read(workspace: &Workspace) -> Result<Metadata, String> {
     let mut command = cargo(workspace);
-    let text = output_of(command.args(["metadata", "--format-version", "1", "--no-deps"]), Duration::from_secs(300))?;
+    let text = output_of(command.args(["metadata", "--format-version", "1", "--no-deps"]), Duration::from_mins(5))?;
     let value: Value = serde_json::from_str(&text).map_err(|error| format!("cargo metadata: {error}"))?;
     parse(&value)
 }

@@ -44,15 +44,16 @@ impl Parts {
     /// All functions that have a body.
     pub(crate) fn functions(&self) -> Vec<Function> {
         let bytes = self.code.as_bytes();
-        let line = |at: usize| 1 + bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
+        let line = |at: usize| 1 + self.code[..at].matches('\n').count();
         let mut found = Vec::new();
         for (at, _) in self.code.match_indices("fn") {
             let is_word = !(at > 0 && is_word_byte(bytes[at - 1])) && bytes.get(at + 2).is_some_and(u8::is_ascii_whitespace);
             let name: String = self.code[at + 2..].trim_start().chars().take_while(|&c| c.is_alphanumeric() || c == '_').collect();
-            if is_word && !name.is_empty() {
-                if let Some(end) = body_end(bytes, at) {
-                    found.push(Function { name, first_line: line(at), last_line: line(end) });
-                }
+            if is_word
+                && !name.is_empty()
+                && let Some(end) = body_end(bytes, at)
+            {
+                found.push(Function { name, first_line: line(at), last_line: line(end) });
             }
         }
         found

@@ -41,7 +41,7 @@ impl Tree {
     pub(crate) fn read(workspace: &Workspace) -> Result<Self, String> {
         let mut git = Command::new("git");
         git.current_dir(&workspace.root).args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]);
-        let list = output_of(&mut git, Duration::from_secs(60))?;
+        let list = output_of(&mut git, Duration::from_mins(1))?;
         // What is tracked but deleted, and what is no text, has nothing to check.
         let file = |path: &str| Some(File { path: path.to_owned(), text: std::fs::read_to_string(workspace.root.join(path)).ok()? });
         let mut files: Vec<File> = list.split_terminator('\0').filter_map(file).collect();

@@ -146,8 +146,8 @@ pub fn minimise(mut f: impl FnMut(f64) -> f64, a: f64, b: f64, tolerance: f64) -
     for _ in 0..200 {
         let middle = 0.5 * (a + b);
         let near = f64::EPSILON.sqrt() * 1e-2 * x.abs() + tolerance.abs() / 3.0 + f64::MIN_POSITIVE;
-        // Written so that NaN ends the search.
-        if !((x - middle).abs() > 2.0 * near - 0.5 * (b - a)) {
+        let spare = (x - middle).abs() - (2.0 * near - 0.5 * (b - a));
+        if spare <= 0.0 || spare.is_nan() {
             break;
         }
         let parabola = (last.abs() > near).then(|| parabolic_step([x, w, v], [fx, fw, fv])).flatten();
@@ -168,16 +168,16 @@ pub fn minimise(mut f: impl FnMut(f64) -> f64, a: f64, b: f64, tolerance: f64) -
         let fu = value(u);
         if fu <= fx {
             if u < x {
-                b = x
+                b = x;
             } else {
-                a = x
+                a = x;
             }
             (v, fv, w, fw, x, fx) = (w, fw, x, fx, u, fu);
         } else {
             if u < x {
-                a = u
+                a = u;
             } else {
-                b = u
+                b = u;
             }
             if fu <= fw || w.to_bits() == x.to_bits() {
                 (v, fv, w, fw) = (w, fw, u, fu);

@@ -294,8 +294,8 @@ impl<'a> System<'a> {
         // F·(u_B − u_A).
         for (node, sign) in beam.nodes.iter().zip([-1.0, 1.0]) {
             for (place, direction) in &model.nodes[*node].translations {
-                for axis in 0..2 {
-                    let (force, factor) = (beam.force + axis, sign * direction[axis]);
+                for (axis, component) in direction.iter().enumerate() {
+                    let (force, factor) = (beam.force + axis, sign * component);
                     self.residual[*place] += factor * x[force];
                     self.residual[force] += factor * x[*place];
                     self.matrix[place * m + force] += factor;

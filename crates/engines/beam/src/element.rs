@@ -12,7 +12,8 @@
 //!
 //! Lagrangian of a beam from A to B, stationary at equilibrium, with the rest shape subtracted by the same quadrature so that rest
 //! is an exact equilibrium:
-//! ∫ EI/(2L) φ'² du + F·(u_B − u_A − L ∫ (t(θ) − t(η)) du) − L ∫ [N²/(2EA) + Q²/(2kGA)] du.
+//!
+//! `∫ EI/(2L) φ'² du + F·(u_B − u_A − L ∫ (t(θ) − t(η)) du) − L ∫ [N²/(2EA) + Q²/(2kGA)] du`
 //!
 //! φ is a polynomial: linear between the end rotations plus integrated Legendre polynomials ("bubbles", zero at both ends)
 //! `B_k = (P_k − P_{k−2})/(2 √(2k−1))`, whose slopes `√(2k−1) P_{k−1}` are orthonormal on [0, 1].
@@ -115,6 +116,9 @@ impl Coordinates<'_> {
     }
 }
 
+/// Pivots of the bubbles below this fraction of the bending stiffness call for pivoting: they cost as many digits.
+const SMALL_PIVOT: f64 = 1e-2;
+
 /// Buffers for the linearised equations of one beam.
 #[derive(Debug)]
 pub(crate) struct Element {
@@ -125,11 +129,13 @@ pub(crate) struct Element {
     /// Mixed derivatives by (bubbles, end rotations) and (H, V).
     coupling: Vec<f64>,
     lu: Lu,
-    /// Condensation: bubbles' answer to unit (φ_A, φ_B, H, V) and to their own residual, five columns.
+    /// Factors of the bubbles' part, `bubbles × bubbles`.
+    symmetric: Vec<f64>,
+    /// Condensation: bubbles' answer to unit (`φ_A`, `φ_B`, H, V) and to their own residual, five columns.
     answer: Vec<f64>,
-    /// Condensed second derivatives by (φ_A, φ_B, H, V).
+    /// Condensed second derivatives by (`φ_A`, `φ_B`, H, V).
     pub(crate) matrix: [[f64; 4]; 4],
-    /// Condensed first derivatives by (φ_A, φ_B, H, V); the last two are the gap without the node displacements.
+    /// Condensed first derivatives by (`φ_A`, `φ_B`, H, V); the last two are the gap without the node displacements.
     pub(crate) gradient: [f64; 4],
 }
 
@@ -141,6 +147,7 @@ impl Element {
             residual: vec![0.0; n],
             coupling: vec![0.0; n * 2],
             lu: Lu::new(),
+            symmetric: vec![0.0; bubbles * bubbles],
             answer: vec![0.0; bubbles * 5],
             matrix: [[0.0; 4]; 4],
             gradient: [0.0; 4],
@@ -154,7 +161,7 @@ impl Element {
     pub(crate) fn linearise(&mut self, basis: &Basis, rest: &RestShape, c: &Constants, at: Coordinates) -> Result<(), Singular> {
         self.integrate(basis, rest, c, at);
         self.add_bending(c, at);
-        self.condense(basis.bubbles)
+        self.condense(basis.bubbles, c)
     }
 
     /// The part under the integral sign, without the bending energy.
@@ -179,7 +186,8 @@ impl Element {
                 self.coupling[2 * i] -= w * by_h * b;
                 self.coupling[2 * i + 1] -= w * by_v * b;
                 let factor = -w * load_slope * b;
-                for (target, other) in self.hessian[i * n + i..(i + 1) * n].iter_mut().zip(&row[i..]) {
+                // The lower triangle.
+                for (target, other) in self.hessian[i * n..=i * n + i].iter_mut().zip(row) {
                     *target += factor * other;
                 }
             }
@@ -206,27 +214,31 @@ impl Element {
         }
         let (a, b) = (bubbles, bubbles + 1);
         self.hessian[a * n + a] += c.bending;
-        self.hessian[a * n + b] -= c.bending;
+        self.hessian[b * n + a] -= c.bending;
         self.hessian[b * n + b] += c.bending;
         let moment = c.bending * (at.ends[1] - at.ends[0]);
         self.residual[a] -= moment;
         self.residual[b] += moment;
-        for row in 1..n {
-            for column in 0..row {
+        for row in 0..n {
+            for column in row + 1..n {
                 self.hessian[row * n + column] = self.hessian[column * n + row];
             }
         }
     }
 
-    fn condense(&mut self, bubbles: usize) -> Result<(), Singular> {
+    fn condense(&mut self, bubbles: usize, c: &Constants) -> Result<(), Singular> {
         let n = bubbles + 2;
-        self.lu.factor(bubbles, n, &self.hessian)?;
         for (row, answer) in self.answer.chunks_exact_mut(5).enumerate() {
             answer[..2].copy_from_slice(&self.hessian[row * n + bubbles..(row + 1) * n]);
             answer[2..4].copy_from_slice(&self.coupling[2 * row..2 * row + 2]);
             answer[4] = self.residual[row];
         }
-        self.lu.solve_columns(&mut self.answer, 5);
+        if self.factor_symmetric(bubbles, c.bending) {
+            self.solve_symmetric(bubbles);
+        } else {
+            self.lu.factor(bubbles, n, &self.hessian)?;
+            self.lu.solve_columns(&mut self.answer, 5);
+        }
         for end in 0..2 {
             let row = bubbles + end;
             self.gradient[end] = self.residual[row];
@@ -248,7 +260,61 @@ impl Element {
         Ok(())
     }
 
-    /// Change of the bubbles that goes with a change of (φ_A, φ_B, H, V); `residual` is 1 for a Newton step, 0 for a tangent.
+    /// Factors the bubbles as L·D·Lᵀ without pivoting, rows of L below the diagonal and 1/D on it. Half the work of LU, and safe
+    /// as long as no pivot is small against the bending stiffness: `false` leaves it to LU.
+    fn factor_symmetric(&mut self, bubbles: usize, bending: f64) -> bool {
+        let n = bubbles + 2;
+        for row in 0..bubbles {
+            let (done, rest) = self.symmetric.split_at_mut(row * bubbles);
+            let current = &mut rest[..=row];
+            current.copy_from_slice(&self.hessian[row * n..=row * n + row]);
+            // current[k] becomes L·D first, then L.
+            for k in 0..row {
+                let above = &done[k * bubbles..k * bubbles + k];
+                let sum: f64 = current[..k].iter().zip(above).map(|(a, b)| a * b).sum();
+                current[k] -= sum;
+            }
+            let mut pivot = current[row];
+            for k in 0..row {
+                let scaled = current[k] * done[k * bubbles + k];
+                pivot -= current[k] * scaled;
+                current[k] = scaled;
+            }
+            // Written so that NaN fails.
+            if !(pivot.abs() > SMALL_PIVOT * bending && pivot.is_finite()) {
+                return false;
+            }
+            current[row] = 1.0 / pivot;
+        }
+        true
+    }
+
+    fn solve_symmetric(&mut self, bubbles: usize) {
+        for row in 1..bubbles {
+            let (done, rest) = self.answer.split_at_mut(row * 5);
+            for (factor, x) in self.symmetric[row * bubbles..row * bubbles + row].iter().zip(done.chunks_exact(5)) {
+                for j in 0..5 {
+                    rest[j] -= factor * x[j];
+                }
+            }
+        }
+        for (row, x) in self.answer.chunks_exact_mut(5).enumerate() {
+            let inverse = self.symmetric[row * bubbles + row];
+            for x in x {
+                *x *= inverse;
+            }
+        }
+        for row in (1..bubbles).rev() {
+            let (head, rest) = self.answer.split_at_mut(row * 5);
+            for (factor, x) in self.symmetric[row * bubbles..row * bubbles + row].iter().zip(head.chunks_exact_mut(5)) {
+                for j in 0..5 {
+                    x[j] -= factor * rest[j];
+                }
+            }
+        }
+    }
+
+    /// Change of the bubbles that goes with a change of (`φ_A`, `φ_B`, H, V); `residual` is 1 for a Newton step, 0 for a tangent.
     pub(crate) fn expand(&self, change: [f64; 4], residual: f64, bubbles: &mut [f64]) {
         for (target, answer) in bubbles.iter_mut().zip(self.answer.chunks_exact(5)) {
             let sum: f64 = answer.iter().zip(&change).map(|(a, c)| a * c).sum();

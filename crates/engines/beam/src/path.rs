@@ -11,7 +11,21 @@ use crate::{
 };
 
 /// Polynomial degrees of the rotation of a beam that are tried in turn.
-const DEGREES: [usize; 6] = [8, 12, 16, 24, 32, 48];
+const DEGREES: [usize; 8] = [6, 9, 12, 16, 22, 30, 38, 48];
+
+/// The first degree worth trying: two degrees too low would be computed for nothing.
+fn first_degree(accuracy: f64) -> usize {
+    if accuracy >= 1e-4 {
+        0
+    } else if accuracy >= 1e-6 {
+        1
+    } else {
+        2
+    }
+}
+
+/// The first resolution only serves the comparison: it visits about this many stations.
+const COMPARED: usize = 12;
 
 /// Work done, the same on every machine.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -102,30 +116,44 @@ pub fn trace(
     }
     check_stations(stations)?;
     let model = Arc::new(Model::new(network, settings.theory));
+    let degrees = &DEGREES[first_degree(accuracy)..];
+    let sample = thinned(stations);
     let mut counters = Counters::default();
     let mut coarser: Option<(Run, Arc<Resolution>)> = None;
     let mut error_estimate = None;
-    for (level, &degree) in DEGREES.iter().enumerate() {
-        let resolution = Arc::new(Resolution::new(&model, degree));
+    let mut level = 0;
+    loop {
+        let resolution = Arc::new(Resolution::new(&model, degrees[level]));
         // Half of what is left for each level: the number of levels is not known beforehand.
         let (done, share) = (1.0 - halves(level), halves(level + 1));
         let mut part = |fraction: f64| progress(done + share * fraction);
-        let run = Stepper::new(&model, &resolution, settings.iteration_limit, &mut counters, &mut part).run(stations);
-        let ended = matches!(
+        let visited = if level == 0 { &sample } else { stations };
+        let run = Stepper::new(&model, &resolution, settings.iteration_limit, &mut counters, &mut part).run(visited);
+        let hopeless = matches!(
             run.status,
             Status::Stopped { .. } | Status::IterationLimit { .. } | Status::OverConstrained { .. } | Status::Mechanism { .. }
         );
+        let mut resolved = false;
         if let Some((before, _)) = &coarser {
-            error_estimate = Some(difference(&model, &before.points, &run.points));
+            let estimate = difference(&model, &before.points, &run.points);
+            error_estimate = Some(estimate);
+            resolved = estimate <= accuracy && same_end(&before.status, &run.status);
         }
-        let agree = coarser.as_ref().is_some_and(|(before, _)| same_end(&before.status, &run.status));
-        let last = level + 1 == DEGREES.len();
-        if ended || last || (agree && error_estimate.is_some_and(|e| e <= accuracy)) {
+        level += 1;
+        if hopeless || resolved || level == degrees.len() {
             return Ok(finish(model, (run, resolution), coarser, error_estimate, accuracy, counters));
         }
         coarser = Some((run, resolution));
     }
-    unreachable!("the last level returns")
+}
+
+/// About [`COMPARED`] of the stations, the last included.
+fn thinned(stations: &[f64]) -> Vec<f64> {
+    let stride = stations.len().div_ceil(COMPARED).max(1);
+    let from_the_end = stations.iter().rev().step_by(stride);
+    let mut sample: Vec<f64> = from_the_end.copied().collect();
+    sample.reverse();
+    sample
 }
 
 /// 2⁻ⁿ.
@@ -181,23 +209,27 @@ fn same_end(a: &Status, b: &Status) -> bool {
 
 /// Largest difference of force and of the largest stress of a beam over the common stations, relative to the largest of the path.
 fn difference(model: &Model, coarse: &[Point], fine: &[Point]) -> f64 {
-    // Below this a force is rounding: a network that moves freely is resolved.
-    let (mut largest_force, mut largest_stress) = (1e-9 * model.reaction_unit(), f64::MIN_POSITIVE);
+    // Next to rest, forces and stresses are differences of angles: rounding. These floors are those of a rotation of 1e-6 rad.
+    let mut largest_force = 1e-6 * model.reaction_unit();
+    let mut largest_stress = 1e-6 * model.beams.iter().map(|b| b.info.stress_unit_pa()).fold(0.0, f64::max);
     let (mut force, mut stress) = (0.0_f64, 0.0_f64);
-    for (a, b) in coarse.iter().zip(fine) {
+    let mut compared = coarse.iter().peekable();
+    let mut nothing_compared = true;
+    for b in fine {
+        largest_force = largest_force.max(b.force.abs());
+        largest_stress = b.beams.iter().fold(largest_stress, |m, s| m.max(s.peak_stress().stress_pa));
+        // Both lists ascend and hold the same numbers where they meet.
+        let Some(a) = compared.next_if(|a| a.control <= b.control) else { continue };
+        nothing_compared &= a.control <= 0.0;
         force = larger(force, (a.force - b.force).abs());
         // Under force control the displacement carries the error.
         force = larger(force, (a.stiffness * (a.displacement - b.displacement)).abs());
-        largest_force = largest_force.max(b.force.abs());
         for (a, b) in a.beams.iter().zip(&b.beams) {
-            let (a, b) = (a.peak_stress().stress_pa, b.peak_stress().stress_pa);
-            stress = larger(stress, (a - b).abs());
-            largest_stress = largest_stress.max(b);
+            stress = larger(stress, (a.peak_stress().stress_pa - b.peak_stress().stress_pa).abs());
         }
     }
-    // At rest, stress is rounding too.
-    if fine.iter().all(|p| p.control == 0.0) {
-        return 0.0;
+    if nothing_compared && fine.iter().any(|p| p.control > 0.0) {
+        return f64::INFINITY;
     }
     larger(force / largest_force, stress / largest_stress)
 }

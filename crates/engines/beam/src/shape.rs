@@ -183,7 +183,7 @@ impl Shape {
     }
 }
 
-/// Bound on the total change of angle, Σ k |c_k|, rad.
+/// Bound on the total change of angle, Σ k |`c_k`|, rad.
 fn turn_bound(angle_rad: &[f64]) -> f64 {
     angle_rad.iter().enumerate().map(|(k, c)| k as f64 * c.abs()).sum()
 }
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn chord_is_spanned_to_rounding() {
-        for bend in [vec![], vec![1.3092, -1.5707], vec![20.0], vec![3.0, -5.0, 7.0, -4.0]] {
+        for bend in [vec![], vec![1.3092, -1.57], vec![20.0], vec![3.0, -5.0, 7.0, -4.0]] {
             for chord in [[0.028, 0.01877], [-3.0, 0.0], [0.0, -1e-9]] {
                 let s = Shape::from_chord(chord, &bend).unwrap();
                 close(s.chord_m(), chord, 4e-15 * maths::hypot(chord[0], chord[1]).max(s.length_m()));

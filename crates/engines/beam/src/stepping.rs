@@ -15,12 +15,14 @@ const LARGEST_TURN: f64 = 0.15;
 const TRAVEL_WEIGHT: f64 = 40.0 * LARGEST_TURN;
 /// Largest distance between prediction and solution, rad: more may mean another branch.
 const LARGEST_CORRECTION: f64 = 0.02;
-/// Newton's method ends when a correction is below this, rad. The reaction is then right to its square.
-const CONVERGED: f64 = 1e-10;
+/// Largest part of the change in one step that the tangents at its ends leave unexplained.
+const LARGEST_DEFECT: f64 = 0.1;
+/// Newton's method ends when a correction is below this, rad. State and reaction are then right to its square, the tangent to itself.
+const CONVERGED: f64 = 1e-8;
 /// Corrections that stop shrinking below this are rounding.
-const ROUNDING: f64 = 1e-8;
+const ROUNDING: f64 = 1e-7;
 const MOST_ITERATIONS: u32 = 10;
-/// Steps are not cut below this fraction of the first one.
+/// Steps are not cut below this fraction of the first one, or of the way behind if that is shorter.
 const SMALLEST_STEP: f64 = 1e-8;
 /// The state moves this many times faster than ever before: the signature of a limit point at the smallest step.
 const RUNAWAY: f64 = 100.0;
@@ -145,8 +147,8 @@ impl<'a> Stepper<'a> {
                     Interrupted::Rejected => {
                         self.counters.rejected_steps += 1;
                         step = 0.5 * (target - here);
-                        // A limit of the state space in reach ends the search early: halving goes on until the smallest step.
-                        if step >= SMALLEST_STEP * first && here + 0.25 * step > here {
+                        let smallest = SMALLEST_STEP * first.min(here.max(1e-3 * first));
+                        if step >= smallest && here + 0.25 * step > here {
                             continue;
                         }
                         run.status = self.why_stuck(&run.knots, control);
@@ -173,6 +175,7 @@ impl<'a> Stepper<'a> {
         }
         self.system.newton_step();
         self.reaction = self.system.reaction();
+        self.system.tangent();
         self.keep(&mut run.knots, 0.0);
         None
     }
@@ -226,6 +229,10 @@ impl<'a> Stepper<'a> {
         }
         let distance = self.distance_from_prediction();
         if distance > LARGEST_CORRECTION {
+            return Err(Interrupted::Rejected);
+        }
+        self.system.tangent();
+        if !self.is_smooth(&knots[knots.len() - 1], target) {
             return Err(Interrupted::Rejected);
         }
         self.counters.steps += 1;
@@ -308,9 +315,21 @@ impl<'a> Stepper<'a> {
         pairs.fold(0.0, |m, ((x, p), w)| larger(m, ((x - p) * w).abs()))
     }
 
-    /// Stores the converged state and its tangent.
+    /// Whether the tangents at both ends of a step explain the change between them, by the trapezoidal rule. A jump to another
+    /// branch may land close to the prediction, but not with a tangent that fits.
+    fn is_smooth(&self, from: &Knot, control: f64) -> bool {
+        let half = 0.5 * (control - from.control);
+        let (mut change, mut defect) = (0.0, 0.0);
+        for (i, w) in self.weights.iter().enumerate() {
+            let moved = self.state[i] - from.state[i];
+            change = larger(change, (w * moved).abs());
+            defect = larger(defect, (w * (moved - half * (from.tangent[i] + self.system.change[i]))).abs());
+        }
+        defect <= LARGEST_DEFECT * change + CONVERGED
+    }
+
+    /// Stores the converged state and the tangent in [`System::change`].
     fn keep(&mut self, knots: &mut Vec<Knot>, control: f64) {
-        self.system.tangent();
         knots.push(Knot { control, state: self.state.clone(), tangent: self.system.change.clone() });
     }
 

@@ -1,1 +1,98 @@
-//! (being written)
+//! Compliant constant-force mechanisms of flexible beams: the family.
+//!
+//! Source: C.-C. Lan, J.-H. Wang, Y.-H. Chen, "A Compliant Constant-Force Mechanism for Adaptive Robot End-Effector Operations", IEEE
+//! ICRA 2010. Theory, corrections and limits of validity: `docs/theory/compliant.md`.
+
+mod analysis;
+mod checks;
+mod design;
+mod explain;
+mod figures;
+mod force_curve;
+mod metrics;
+mod reproduce;
+mod scene;
+mod spec;
+mod statements;
+
+use forcewright_base::diagnostics::{Diagnostics, Explanation};
+use forcewright_contract::family::{Analysis, Mechanism, Progress, Reproduction};
+use forcewright_model::{Counter, Outcome, Status, StatusKind};
+
+pub use analysis::{Behaviour, LargestStress, Measured, measure};
+pub use design::{Design, DisplayUnits, Mirror, Requirements, StressLimit};
+pub use force_curve::{ForceCurve, Interval};
+pub use metrics::{METRICS, MetricInfo};
+pub use spec::Spec;
+
+/// The family.
+pub struct Compliant;
+
+impl Mechanism for Compliant {
+    type Spec = Spec;
+    type Design = Design;
+
+    const ID: &'static str = "compliant";
+    const TITLE: &'static str = "Compliant constant-force mechanism";
+
+    fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
+        design::resolve(spec, diagnostics)
+    }
+
+    fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
+        let behaviour = match Behaviour::of(design, progress) {
+            Ok(behaviour) => behaviour,
+            Err(error) => return refused(design, error.to_string()),
+        };
+        let measured = measure(design, &behaviour);
+        let counters = behaviour.path.counters;
+        let count = |name, count| Counter { name, count };
+        let outcome = Outcome {
+            mechanism: Self::ID,
+            title: design.title.clone(),
+            status: analysis::status(design, &behaviour),
+            error_estimate: behaviour.path.error_estimate.map(|e| e.max(behaviour.interpolation_error)),
+            metrics: analysis::metrics(design, &measured),
+            checks: checks::checks(design, &behaviour, &measured),
+            curves: figures::curves(design, &behaviour),
+            counters: vec![
+                count("stations", behaviour.path.points.len() as u64),
+                count("polynomial_degree", behaviour.path.degree as u64),
+                count("newton_iterations", counters.newton_iterations),
+                count("residual_evaluations", counters.residual_evaluations),
+                count("factorisations", counters.factorisations),
+                count("steps", counters.steps),
+                count("rejected_steps", counters.rejected_steps),
+            ],
+            sources: statements::sources(design),
+            warnings: statements::warnings(design, &behaviour, &measured),
+        };
+        let figures = figures::figures(design, &behaviour, &measured);
+        Analysis { outcome, figures, model: statements::model(design), limits: statements::limits() }
+    }
+
+    fn explanations() -> &'static [Explanation] {
+        explain::CODES
+    }
+
+    fn reproductions() -> &'static [Reproduction] {
+        reproduce::ALL
+    }
+}
+
+/// An analysis that could not begin.
+fn refused(design: &Design, message: String) -> Analysis {
+    let outcome = Outcome {
+        mechanism: Compliant::ID,
+        title: design.title.clone(),
+        status: Status { kind: StatusKind::NotConverged, message, advice: None },
+        error_estimate: None,
+        metrics: Vec::new(),
+        checks: Vec::new(),
+        curves: Vec::new(),
+        counters: Vec::new(),
+        sources: statements::sources(design),
+        warnings: Vec::new(),
+    };
+    Analysis { outcome, figures: Vec::new(), model: statements::model(design), limits: statements::limits() }
+}

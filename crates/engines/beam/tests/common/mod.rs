@@ -1,46 +1,47 @@
 //! Networks that several tests share.
 #![allow(dead_code, reason = "each test file uses a part")]
+#![allow(clippy::approx_constant, reason = "the paper prints 1.5707")]
 
 use forcewright_beam::{Beam, Drive, Joint, Network, Node, Path, Rotation, Section, Settings, Shape, Support, Theory, trace};
 
-/// Material and section of Table 2: E = 2 GPa, w = 1 mm, t = 10 mm. Poisson's ratio of polyoxymethylene is not in the paper.
-pub const POM: Section = Section { young_pa: 2e9, thickness_m: 1e-3, depth_m: 1e-2, poisson: Some(0.35) };
+/// Material and section of Table 2: `E = 2 GPa`, w = 1 mm, t = 10 mm. Poisson's ratio of polyoxymethylene is not in the paper.
+pub(crate) const POM: Section = Section { young_pa: 2e9, thickness_m: 1e-3, depth_m: 1e-2, poisson: Some(0.35) };
 
 /// Table 3 of Lan, Wang & Chen 2010, rad. The last coefficient is printed +1.148; only −1.148 closes.
-pub const TABLE3_SHAPES: [[f64; 3]; 4] =
+pub(crate) const TABLE3_SHAPES: [[f64; 3]; 4] =
     [[0.4592, 1.3092, -1.5707], [1.6382, -0.7560, 1.5707], [-4.081, 0.3013, 1.5707], [2.394, 0.226, -1.148]];
 /// Lengths, cm.
-pub const TABLE3_LENGTHS: [f64; 4] = [3.404, 1.987, 2.199, 1.959];
+pub(crate) const TABLE3_LENGTHS: [f64; 4] = [3.404, 1.987, 2.199, 1.959];
 /// Nodes `n_1` … `n_5`, cm.
-pub const TABLE3_NODES: [[f64; 2]; 5] = [[0.25, 0.0], [3.45, 0.0], [3.05, 1.877], [1.244, 2.40], [0.25, 4.0]];
+pub(crate) const TABLE3_NODES: [[f64; 2]; 5] = [[0.25, 0.0], [3.45, 0.0], [3.05, 1.877], [1.244, 2.40], [0.25, 4.0]];
 
-pub fn exact(theory: Theory) -> Settings {
+pub(crate) fn exact(theory: Theory) -> Settings {
     Settings { theory, accuracy: 1e-9, ..Settings::default() }
 }
 
-pub fn elastica() -> Settings {
+pub(crate) fn elastica() -> Settings {
     exact(Theory::Inextensible)
 }
 
-pub fn solve(network: &Network, stations: &[f64], settings: &Settings) -> Path {
+pub(crate) fn solve(network: &Network, stations: &[f64], settings: &Settings) -> Path {
     let path = trace(network, stations, settings, &mut |_| true).expect("a sound network");
     assert!(path.status.is_complete(), "{} after {} points", path.status, path.points.len());
     assert_eq!(path.points.len(), stations.len());
     path
 }
 
-pub fn rigid(start: usize, end: usize, shape: Shape, section: Section) -> Beam {
+pub(crate) fn rigid(start: usize, end: usize, shape: Shape, section: Section) -> Beam {
     Beam { start, end, shape, section, start_joint: Joint::Rigid, end_joint: Joint::Rigid }
 }
 
-pub fn node(position_m: [f64; 2], support: Support) -> Node {
+pub(crate) fn node(position_m: [f64; 2], support: Support) -> Node {
     Node { position_m, support }
 }
 
-pub const VERTICAL_GUIDE: Support = Support::Slider { direction: [0.0, 1.0], rotation: Rotation::Fixed };
+pub(crate) const VERTICAL_GUIDE: Support = Support::Slider { direction: [0.0, 1.0], rotation: Rotation::Fixed };
 
 /// The half mechanism of Fig. 3 with given beams: `n_1` and `n_2` clamped, `n_5` on a vertical guide and pushed down.
-pub fn half_mechanism(nodes_m: [[f64; 2]; 5], shapes: [Shape; 4], section: Section) -> Network {
+pub(crate) fn half_mechanism(nodes_m: [[f64; 2]; 5], shapes: [Shape; 4], section: Section) -> Network {
     let [a, b, c, d] = shapes;
     Network {
         nodes: vec![
@@ -56,7 +57,7 @@ pub fn half_mechanism(nodes_m: [[f64; 2]; 5], shapes: [Shape; 4], section: Secti
 }
 
 /// Table 3 with the printed shapes and lengths; the nodes follow from `n_1`.
-pub fn table3_by_shapes(section: Section) -> Network {
+pub(crate) fn table3_by_shapes(section: Section) -> Network {
     let shapes: Vec<Shape> =
         TABLE3_SHAPES.iter().zip(TABLE3_LENGTHS).map(|(c, l)| Shape::new(c.to_vec(), l * 1e-2).expect("a shape")).collect();
     let chord = |i: usize| shapes[i].chord_m();
@@ -69,19 +70,19 @@ pub fn table3_by_shapes(section: Section) -> Network {
 }
 
 /// Table 3 with the printed nodes and bends; `c_0` and lengths follow.
-pub fn table3_by_nodes(section: Section) -> Network {
+pub(crate) fn table3_by_nodes(section: Section) -> Network {
     let n = TABLE3_NODES.map(|p| p.map(|x| x * 1e-2));
     let ends = [(0, 2), (1, 2), (2, 3), (3, 4)];
     let shape = |i: usize| Shape::from_chord(add(n[ends[i].1], n[ends[i].0], -1.0), &TABLE3_SHAPES[i][1..]).expect("a shape");
     half_mechanism(n, [shape(0), shape(1), shape(2), shape(3)], section)
 }
 
-pub fn add(a: [f64; 2], b: [f64; 2], factor: f64) -> [f64; 2] {
+pub(crate) fn add(a: [f64; 2], b: [f64; 2], factor: f64) -> [f64; 2] {
     [a[0] + factor * b[0], a[1] + factor * b[1]]
 }
 
 /// A straight beam from a clamp at the origin along a direction, with its other end as given.
-pub fn cantilever(length_m: f64, angle_rad: f64, section: Section, support: Support, drive: Drive) -> Network {
+pub(crate) fn cantilever(length_m: f64, angle_rad: f64, section: Section, support: Support, drive: Drive) -> Network {
     let shape = Shape::new(vec![angle_rad], length_m).expect("a shape");
     Network {
         nodes: vec![node([0.0, 0.0], Support::Clamped), node(shape.chord_m(), support)],
@@ -91,11 +92,11 @@ pub fn cantilever(length_m: f64, angle_rad: f64, section: Section, support: Supp
 }
 
 #[track_caller]
-pub fn near(got: f64, want: f64, tolerance: f64, what: &str) {
+pub(crate) fn near(got: f64, want: f64, tolerance: f64, what: &str) {
     assert!((got - want).abs() <= tolerance * want.abs().max(f64::MIN_POSITIVE), "{what}: got {got:.15e}, want {want:.15e}");
 }
 
 #[track_caller]
-pub fn close(got: f64, want: f64, absolute: f64, what: &str) {
+pub(crate) fn close(got: f64, want: f64, absolute: f64, what: &str) {
     assert!((got - want).abs() <= absolute, "{what}: got {got:.15e}, want {want:.15e}");
 }

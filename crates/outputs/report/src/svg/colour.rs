@@ -1,5 +1,9 @@
 //! Colours: what things are painted with, and the map from values to colours.
 
+use std::fmt::Write as _;
+
+use crate::escape::each;
+
 /// What a thing is painted with. Each has a custom property, so that a page can follow the reader's light or dark setting, and a
 /// colour for light paper where the property is not set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +71,7 @@ impl Paint {
 
 /// Declarations of all properties, for light or for dark paper: `--fw-ink:#1a1f26;…`.
 pub fn declarations(dark: bool) -> String {
-    PAINTS.iter().map(|(_, property, light, night)| format!("{property}:{};", if dark { night } else { light })).collect()
+    each(&PAINTS, |(_, property, light, night)| format!("{property}:{};", if dark { night } else { light }))
 }
 
 /// Nine colours of viridis, evenly spaced (Smith and van der Walt's map of the matplotlib project, released to the public domain):
@@ -109,7 +113,7 @@ pub(super) fn of_level(level: u8) -> String {
         let mixed = f64::from(*a) + part * (f64::from(b) - f64::from(*a));
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two bytes")]
         let byte = mixed.round() as u8;
-        out.push_str(&format!("{byte:02x}"));
+        let _ = write!(out, "{byte:02x}");
     }
     out
 }

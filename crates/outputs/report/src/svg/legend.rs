@@ -8,7 +8,7 @@ use super::text;
 const SIZE: f64 = 13.0;
 const ROW: f64 = 19.0;
 const SWATCH: f64 = 34.0;
-const GAP: f64 = 26.0;
+const GAP: f64 = 18.0;
 
 /// What stands before a legend text.
 #[derive(Clone, Debug)]
@@ -66,11 +66,9 @@ fn swatch(canvas: &mut Canvas, swatch: &Swatch, x: f64, y: f64) {
             }
         }
         Swatch::Band => band(canvas, &Rect::sized(x, y - 7.0, SWATCH, 14.0)),
-        Swatch::Point => canvas.circle(
-            [x + 0.5 * SWATCH, y],
-            4.5,
-            &format!(r#"{} stroke-width="2""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)),
-        ),
+        Swatch::Point => {
+            canvas.circle([x + 0.5 * SWATCH, y], 4.5, &format!(r#"{} stroke-width="2""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)));
+        }
     }
 }
 

@@ -55,7 +55,8 @@ pub fn draw_figure(figure: &Figure) -> Drawing {
 /// A figure as a file of its own: light colours, white ground.
 pub fn standalone(figure: &Figure) -> String {
     let drawing = draw_figure(figure);
-    let style = format!("<style>svg{{{}background:#fff}}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n", declarations(false));
+    let style =
+        format!("<style>svg{{{}background:#fff}}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n", declarations(false));
     // The first elements are the title and the description; everything drawn follows.
     let svg = drawing.svg.replacen("</desc>\n", &format!("</desc>\n{style}"), 1);
     format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{svg}")

@@ -83,17 +83,20 @@ pub(super) struct Placed {
 
 /// Distances at which a label is tried.
 const DISTANCES: [f64; 10] = [7.0, 11.0, 16.0, 24.0, 34.0, 48.0, 66.0, 90.0, 120.0, 160.0];
-/// Beyond this distance a leader joins point and label.
-const BESIDE: f64 = 12.0;
+/// Beyond this distance a leader usually joins point and label.
+pub(super) const BESIDE: f64 = 12.0;
 /// Directions tried, in sixteenths of a turn from the right, counter-clockwise; the first are preferred.
 const DIRECTIONS: [u8; 16] = [2, 14, 6, 10, 4, 12, 0, 8, 1, 15, 7, 9, 3, 13, 5, 11];
+
+/// A piece of a line: ends, half thickness, how bad it is to cover it.
+type Line = ([f64; 2], [f64; 2], f64, f64);
 
 /// What is already drawn, and finds room for labels.
 #[derive(Clone, Debug)]
 pub(super) struct Placer {
     area: Rect,
     texts: Vec<Rect>,
-    lines: Vec<([f64; 2], [f64; 2], f64)>,
+    lines: Vec<Line>,
     solids: Vec<Rect>,
 }
 
@@ -108,9 +111,9 @@ impl Placer {
         self.texts.push(rect);
     }
 
-    /// A line of some thickness that should not be covered.
-    pub(super) fn add_line(&mut self, points: &[[f64; 2]], thickness: f64) {
-        self.lines.extend(points.windows(2).map(|w| (w[0], w[1], 0.5 * thickness)));
+    /// A line of some thickness that should not be covered; `weight` is 1 for a result and less for a reference.
+    pub(super) fn add_line(&mut self, points: &[[f64; 2]], thickness: f64, weight: f64) {
+        self.lines.extend(points.windows(2).map(|w| (w[0], w[1], 0.5 * thickness, weight)));
     }
 
     /// An area that should not be covered.
@@ -128,14 +131,15 @@ impl Placer {
         let lines: f64 = self
             .lines
             .iter()
-            .filter_map(|(a, b, half)| clip(*a, *b, &rect.grown(half + 2.0)))
-            .map(|(a, b)| 1.0 + distance(a, b))
+            .filter_map(|(a, b, half, weight)| Some((clip(*a, *b, &rect.grown(half + 2.0))?, weight)))
+            .map(|((a, b), weight)| weight * (1.0 + distance(a, b)))
             .sum();
         lines + 25.0 * self.solids.iter().filter(|s| s.overlaps(rect)).count() as f64
     }
 
-    /// Best place for a box of the given size beside a point; `None` if there is no room at all. The place is then taken.
-    pub(super) fn place(&mut self, point: [f64; 2], width: f64, height: f64) -> Option<Placed> {
+    /// Best place for a box of the given size near a point, with a leader if it is farther than `beside`; `None` if there is no room at
+    /// all. The place is then taken.
+    pub(super) fn place(&mut self, point: [f64; 2], width: f64, height: f64, beside: f64) -> Option<Placed> {
         let mut best: Option<(f64, Placed)> = None;
         for (d, distance) in DISTANCES.into_iter().enumerate() {
             for (preference, direction) in DIRECTIONS.into_iter().enumerate() {
@@ -145,7 +149,7 @@ impl Placer {
                 if !self.can_hold(&rect) {
                     continue;
                 }
-                let leader = self.leader(point, &rect, distance);
+                let leader = self.leader(point, &rect, distance > beside);
                 if leader.is_some_and(|[a, b]| self.texts.iter().any(|t| clip(a, b, t).is_some())) {
                     continue;
                 }
@@ -158,14 +162,17 @@ impl Placer {
         let placed = best.map(|b| b.1).or_else(|| self.anywhere(point, width, height))?;
         self.texts.push(placed.rect);
         if let Some(leader) = placed.leader {
-            self.add_line(&leader, 1.0);
+            self.add_line(&leader, 1.0, 1.0);
         }
         Some(placed)
     }
 
-    fn leader(&self, point: [f64; 2], rect: &Rect, distance: f64) -> Option<[[f64; 2]; 2]> {
-        (distance > BESIDE && self.area.grown(1.0).contains(&Rect::sized(point[0], point[1], 0.0, 0.0)))
-            .then(|| [point, rect.nearest(point)])
+    fn leader(&self, point: [f64; 2], rect: &Rect, wanted: bool) -> Option<[[f64; 2]; 2]> {
+        (wanted && self.area.grown(1.0).contains(&Rect::sized(point[0], point[1], 0.0, 0.0))).then(|| {
+            // Boxes are upper bounds: the text itself begins a little inside.
+            let inset = 0.06 * rect.width();
+            [point, Rect { x0: rect.x0 + inset, x1: rect.x1 - inset, ..*rect }.nearest(point)]
+        })
     }
 
     /// The nearest free place on a coarse grid, for crowded drawings.
@@ -184,7 +191,7 @@ impl Placer {
             }
             y += 12.0;
         }
-        best.map(|(far, rect)| Placed { rect, leader: self.leader(point, &rect, far) })
+        best.map(|(far, rect)| Placed { rect, leader: self.leader(point, &rect, far > BESIDE) })
     }
 }
 
@@ -204,20 +211,20 @@ mod tests {
     #[test]
     fn many_labels_at_one_point_do_not_overlap() {
         let mut placer = Placer::new(Rect::sized(0.0, 0.0, 300.0, 200.0));
-        let placed: Vec<Rect> = (0..12).filter_map(|_| placer.place([150.0, 100.0], 40.0, 14.0)).map(|p| p.rect).collect();
+        let placed: Vec<Rect> = (0..12).filter_map(|_| placer.place([150.0, 100.0], 40.0, 14.0, BESIDE)).map(|p| p.rect).collect();
         assert_eq!(placed.len(), 12);
         for (i, a) in placed.iter().enumerate() {
             assert!(placed[i + 1..].iter().all(|b| !a.overlaps(b)));
         }
-        assert!(placer.place([0.0, 0.0], 301.0, 10.0).is_none());
-        assert!(placer.place([f64::NAN, 0.0], 30.0, 10.0).is_none_or(|p| p.rect.x0.is_finite()));
+        assert!(placer.place([0.0, 0.0], 301.0, 10.0, BESIDE).is_none());
+        assert!(placer.place([f64::NAN, 0.0], 30.0, 10.0, BESIDE).is_none_or(|p| p.rect.x0.is_finite()));
     }
 
     #[test]
     fn a_label_keeps_off_lines() {
         let mut placer = Placer::new(Rect::sized(0.0, 0.0, 300.0, 200.0));
-        placer.add_line(&[[0.0, 200.0], [300.0, 0.0]], 2.0);
-        let placed = placer.place([150.0, 100.0], 40.0, 14.0).unwrap();
+        placer.add_line(&[[0.0, 200.0], [300.0, 0.0]], 2.0, 1.0);
+        let placed = placer.place([150.0, 100.0], 40.0, 14.0, BESIDE).unwrap();
         assert!(placer.covered(&placed.rect) < 1e-9);
     }
 }

@@ -6,7 +6,7 @@ use forcewright_model::{Axis, Plot, Series, Stroke};
 use super::canvas::{Anchor, Canvas, Drawing, Style};
 use super::colour::Paint;
 use super::legend::{self, Entry, Swatch, dashed};
-use super::place::{Placer, Rect, distance};
+use super::place::{BESIDE, Placer, Rect, distance};
 use super::text;
 use super::ticks::{self, Ticks};
 
@@ -99,7 +99,9 @@ pub(super) fn draw(plot: &Plot, size: PlotSize, title: &str, caption: &str) -> D
     let x = ticks::cover(xs.0, xs.1, whole(size.width / 90.0));
     let y = ticks::cover(ys.0, ys.1, whole(size.height / 55.0));
     let widest = y.labels.iter().map(|l| TICK.width(l)).fold(0.0, f64::max);
-    let (left, right) = (EDGE + widest + 10.0, EDGE + 0.5 * x.labels.last().map_or(0.0, |l| TICK.width(l)));
+    let half = |label: Option<&String>| 0.5 * label.map_or(0.0, |l| TICK.width(l));
+    let left = EDGE + (widest + 10.0).max(half(x.labels.first()));
+    let right = EDGE + half(x.labels.last());
     let y_title = text::wrap(&axis_title(&plot.y), TITLE.size * 1.13, size.width - 2.0 * EDGE);
     let spans = span_rows(plot, &x, left, size.width - right);
     let rows = spans.iter().map(|s| s.row + 1).max().unwrap_or(0);
@@ -136,9 +138,8 @@ fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 fn ranges(plot: &Plot) -> ((f64, f64), (f64, f64)) {
     let x = |si: f64| shown(&plot.x, si);
     let y = |si: f64| shown(&plot.y, si);
-    let pairs = || {
-        plot.series.iter().flat_map(|s| s.x.iter().zip(&s.y)).map(|(a, b)| (*a, *b)).chain(plot.markers.iter().map(|m| (m.x, m.y)))
-    };
+    let pairs =
+        || plot.series.iter().flat_map(|s| s.x.iter().zip(&s.y)).map(|(a, b)| (*a, *b)).chain(plot.markers.iter().map(|m| (m.x, m.y)));
     let xs = pairs()
         .filter(|(_, b)| y(*b).is_some())
         .filter_map(|(a, _)| x(a))
@@ -180,7 +181,9 @@ fn span_rows(plot: &Plot, x: &Ticks, left: f64, right: f64) -> Vec<SpanLabel> {
         let width = SPAN.width(&text);
         let start = (0.5 * (x0 + x1 - width)).clamp(left, (right - width).max(left));
         let text_rect = Rect::sized(start, 0.0, width, SPAN.height());
-        let row = (0..).find(|r| !out.iter().any(|o| o.row == *r && o.text_rect.overlaps(&text_rect.grown(6.0)))).unwrap_or(0);
+        // As many rows as spans are always enough.
+        let row =
+            (0..plot.spans.len()).find(|r| !out.iter().any(|o| o.row == *r && o.text_rect.overlaps(&text_rect.grown(6.0)))).unwrap_or(0);
         out.push(SpanLabel { x0, x1, text, text_rect, row });
     }
     out
@@ -241,14 +244,14 @@ fn axes(canvas: &mut Canvas, frame: &Frame, width: f64) -> f64 {
     let widest = frame.x.labels.iter().map(|l| TICK.width(l)).fold(0.0, f64::max);
     let every = whole_above((widest + 8.0) / dx);
     for (i, label) in frame.x.labels.iter().enumerate().step_by(every) {
-        canvas.text(label, [area.x0 + i as f64 * dx, area.y1 + 18.0], Anchor::Middle, TICK);
+        canvas.text(label, [area.x0 + i as f64 * dx, area.y1 + 20.0], Anchor::Middle, TICK);
     }
     let dy = area.height() / (ny.max(2) - 1) as f64;
     let every = whole_above((TICK.height() + 3.0) / dy);
     for (i, label) in frame.y.labels.iter().enumerate().step_by(every) {
         canvas.text(label, [area.x0 - 8.0, area.y1 - i as f64 * dy + 4.5], Anchor::End, TICK);
     }
-    let mut y = area.y1 + 41.0;
+    let mut y = area.y1 + 43.0;
     for line in text::wrap(&axis_title(&frame.plot.x), TITLE.size * 1.13, width - 2.0 * EDGE) {
         let half = 0.5 * TITLE.width(&line);
         let middle = (0.5 * (area.x0 + area.x1)).clamp(EDGE + half, (width - EDGE - half).max(EDGE + half));
@@ -290,7 +293,7 @@ fn lines(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
         canvas.open_stroke(paint, width, &format!(r#"stroke-linejoin="round" {}"#, dashed(dash)));
         for piece in &pieces {
             canvas.polyline(piece, "");
-            placer.add_line(piece, width);
+            placer.add_line(piece, width, 1.0);
         }
         canvas.close();
         canvas.open(&paint.attributes("fill"));
@@ -331,7 +334,7 @@ fn levels(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) -> Vec<Entry>
     let drawn: Vec<_> = frame.plot.levels.iter().filter_map(|l| Some((l, frame.at_y(l.at)?))).collect();
     for (level, y) in &drawn {
         if frame.holds(level.at) {
-            placer.add_line(&[[area.x0, *y], [area.x1, *y]], 2.0);
+            placer.add_line(&[[area.x0, *y], [area.x1, *y]], 2.0, 1.0);
         }
     }
     for (level, y) in drawn {
@@ -361,7 +364,7 @@ fn levels(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) -> Vec<Entry>
 /// The place along a level, above or below it, where its label covers least.
 fn level_label(placer: &Placer, area: &Rect, y: f64, width: f64, height: f64) -> Option<Rect> {
     let mut best: Option<(f64, Rect)> = None;
-    for (side, top) in [y - height - 3.0, y + 4.0].into_iter().enumerate() {
+    for (side, top) in [y - height - 4.5, y + 4.5].into_iter().enumerate() {
         for i in 0..=10_u8 {
             let x = area.x1 - 6.0 - width - f64::from(i) / 10.0 * (area.width() - width - 12.0);
             let rect = Rect::sized(x, top, width, height);
@@ -389,7 +392,7 @@ fn markers(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
         if text.is_empty() {
             continue;
         }
-        if let Some(placed) = placer.place(p, style.width(&text), style.height()) {
+        if let Some(placed) = placer.place(p, style.width(&text), style.height(), BESIDE) {
             if let Some(leader) = placed.leader {
                 canvas.segments(&[leader], &format!(r#"fill="none" {} stroke-width="1""#, Paint::Ink.attributes("stroke")));
             }
@@ -400,7 +403,8 @@ fn markers(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
 
 fn entries(plot: &Plot, beyond: &[Entry]) -> Vec<Entry> {
     let mut out = Vec::new();
-    for series in plot.series.iter().filter(|s| !s.label.is_empty()) {
+    // The last one drawn lies in front and is named first.
+    for series in plot.series.iter().rev().filter(|s| !s.label.is_empty()) {
         let (paint, width, dash, squares) = look(series.stroke);
         out.push(Entry { swatch: Swatch::Line { paint, width, dash, squares }, text: series.label.clone() });
     }
@@ -412,7 +416,8 @@ fn entries(plot: &Plot, beyond: &[Entry]) -> Vec<Entry> {
 
 /// The plot in words, for those who cannot see it.
 fn description(plot: &Plot, caption: &str) -> String {
-    let number = |axis: &Axis, si: f64| format_si(si, &axis.display, 4);
+    let number =
+        |axis: &Axis, si: f64| if axis.display.from_si(si).is_finite() { format_si(si, &axis.display, 4) } else { "unknown".to_owned() };
     let mut out = String::from(caption);
     let mut say = |text: String| {
         if !out.is_empty() {

@@ -1,6 +1,6 @@
 //! How wide a text is, without a font: an upper bound for the common sans-serif faces.
 
-/// Advances of U+0020 to U+007E in hundredths of the font size: the larger of DejaVu Sans (the widest of the usual screen faces) and
+/// Advances of U+0020 to U+007E in hundredths of the font size: the larger of `DejaVu` Sans (the widest of the usual screen faces) and
 /// Liberation Sans (metrics of Arial and Helvetica), from their `hmtx` tables, rounded up.
 const ADVANCES: [u8; 95] = [
     32, 41, 46, 84, 64, 96, 78, 28, 40, 40, 50, 84, 32, 37, 32, 34, 64, 64, 64, 64, 64, 64, 64, 64, 64, 64, 34, 34, 84, 84, 84, 56, 102,

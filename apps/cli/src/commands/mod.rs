@@ -1,0 +1,70 @@
+//! One file per command.
+
+pub mod check;
+pub mod completions;
+pub mod explain;
+pub mod new;
+pub mod reproduce;
+pub mod schema;
+pub mod solve;
+
+use clap::ArgMatches;
+use forcewright::{Choices, Refused};
+use serde_json::json;
+
+use crate::{exit, output};
+
+/// What `forcewright` prints without a command: where to start.
+pub fn welcome() -> u8 {
+    output::print(
+        "forcewright: passive force-shaping mechanisms of robots\n\n\
+         Start here:\n  \
+           forcewright new --list                         examples to start from\n  \
+           forcewright new lan-table3                     a project file to edit\n  \
+           forcewright solve lan-table3.toml --out out    the curve, the checks, and a report\n  \
+           forcewright reproduce lan2010                  the paper's numbers beside ours\n  \
+           forcewright explain COMP002                    what a check or an error means\n\n\
+         forcewright --help lists every command.\n",
+    );
+    exit::MET
+}
+
+fn choices(matches: &ArgMatches) -> Choices {
+    Choices {
+        variant: matches.get_one::<String>("variant").cloned(),
+        set: matches.get_many::<String>("set").map(|v| v.cloned().collect()).unwrap_or_default(),
+    }
+}
+
+/// Reports a refused project; the exit code for it.
+fn refuse(refused: &Refused, json: bool) -> u8 {
+    if json {
+        let list: Vec<_> = refused.diagnostics.in_file_order().into_iter().map(|d| diagnostic_json(d, &refused.sources)).collect();
+        let document = json!({ "schema": 1, "forcewright": forcewright::VERSION, "status": { "kind": "refused" }, "diagnostics": list });
+        output::print(&format!("{document:#}\n"));
+    }
+    output::narrate(&refused.render(output::colour_on_stderr()));
+    let count = refused.errors();
+    output::narrate(&format!("{count} error{}; `forcewright explain CODE` tells more about a code\n", if count == 1 { "" } else { "s" }));
+    if refused.file_missing { exit::IO } else { exit::USAGE }
+}
+
+fn diagnostic_json(diagnostic: &forcewright::base::diagnostics::Diagnostic, sources: &forcewright::base::diagnostics::Sources) -> serde_json::Value {
+    use forcewright::base::diagnostics::Severity;
+    let severity = match diagnostic.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    };
+    let mut out = json!({ "code": diagnostic.code, "severity": severity, "message": diagnostic.message });
+    if let Some((span, source)) = diagnostic.span.and_then(|s| Some((s, sources.get(s.source)?)))
+        && let Some((line, column)) = sources.line_column(span)
+    {
+        out["file"] = json!(source.name);
+        out["line"] = json!(line);
+        out["column"] = json!(column);
+    }
+    if let Some(help) = &diagnostic.help {
+        out["help"] = json!(help);
+    }
+    out
+}

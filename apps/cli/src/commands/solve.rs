@@ -1,0 +1,156 @@
+//! `forcewright solve`: analyses a project, prints its requirements and key numbers, writes the report.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::ArgMatches;
+use forcewright::base::units::{format_number, format_si};
+use forcewright::model::{Check, CheckState, Outcome, Report, Sense, StatusKind};
+use forcewright::report::{csv, html, json, svg};
+use forcewright::{DiskFiles, Loaded};
+
+use super::{choices, refuse};
+use crate::progress::Progress;
+use crate::table::{Align, columns};
+use crate::{exit, output};
+
+pub fn run(matches: &ArgMatches) -> u8 {
+    let Some(file) = matches.get_one::<PathBuf>("file") else { return exit::USAGE };
+    let as_json = matches.get_flag("json");
+    let out = matches.get_one::<PathBuf>("out");
+    let choices = choices(matches);
+    let loaded = match Loaded::from_file(&DiskFiles, file, &choices) {
+        Ok(loaded) => loaded,
+        Err(refused) => return refuse(&refused, as_json),
+    };
+    output::narrate(&loaded.project.diagnostics.render(&loaded.project.sources, output::colour_on_stderr()));
+    // Whether the results can be written is found out before the work, not after.
+    if let Some(folder) = out
+        && let Err(error) = std::fs::create_dir_all(folder)
+    {
+        return output::write_failed(folder, &error);
+    }
+    let mut bar = Progress::new("solving");
+    let report = loaded.solve(&file.display().to_string(), &repeat_command(file, out, &choices), &mut |fraction| {
+        bar.show(fraction);
+        true
+    });
+    bar.done();
+    let document = json::document(&report.outcome, &report.input_sha256, &report.version);
+    if as_json {
+        output::print(&format!("{document:#}\n"));
+    } else {
+        output::print(&summary(&report, output::colour_on_stdout()));
+    }
+    if let Some(folder) = out {
+        let mut files = vec![("report.html".to_owned(), html::page(&report)), ("result.json".to_owned(), format!("{document:#}\n")), ("curves.csv".to_owned(), csv::curves(&report.outcome))];
+        files.extend(report.figures.iter().map(|f| (format!("{}.svg", f.id), svg::standalone(f))));
+        for (name, text) in &files {
+            let path = folder.join(name);
+            if let Err(error) = output::write(&path, text) {
+                return output::write_failed(&path, &error);
+            }
+        }
+        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        output::narrate(&format!("wrote {} in {}\n", names.join(", "), folder.display()));
+    }
+    exit_code(&report.outcome)
+}
+
+fn exit_code(outcome: &Outcome) -> u8 {
+    match outcome.status.kind {
+        StatusKind::Interrupted => exit::INTERRUPTED,
+        StatusKind::Complete if outcome.requirements_met() => exit::MET,
+        StatusKind::Complete => exit::MISSED,
+        StatusKind::NoEquilibriumBeyond | StatusKind::NotConverged | StatusKind::ReducedAccuracy => exit::NOT_CONVERGED,
+    }
+}
+
+/// The command that makes this result again.
+fn repeat_command(file: &Path, out: Option<&PathBuf>, choices: &forcewright::Choices) -> String {
+    let mut command = format!("forcewright solve {}", quote(&file.display().to_string()));
+    if let Some(variant) = &choices.variant {
+        let _ = write!(command, " --variant {}", quote(variant));
+    }
+    for setting in &choices.set {
+        let _ = write!(command, " --set {}", quote(setting));
+    }
+    if let Some(out) = out {
+        let _ = write!(command, " --out {}", quote(&out.display().to_string()));
+    }
+    command
+}
+
+/// Quotes a word for a POSIX shell where it needs it.
+fn quote(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
+fn summary(report: &Report, colour: bool) -> String {
+    let outcome = &report.outcome;
+    let mut out = format!("{}\n", outcome.title);
+    if let Some(variant) = &report.variant {
+        let _ = writeln!(out, "variant {variant}");
+    }
+    out.push('\n');
+    if outcome.checks.is_empty() {
+        out.push_str("no requirements given\n");
+    } else {
+        out.push_str(&requirement_table(&outcome.checks, colour));
+    }
+    let advice: Vec<&Check> = outcome.checks.iter().filter(|c| c.advice.is_some()).collect();
+    if !advice.is_empty() {
+        out.push('\n');
+        for check in advice {
+            let _ = writeln!(out, "{} {}: {}", check.code, check.name, check.advice.as_deref().unwrap_or_default());
+        }
+    }
+    out.push('\n');
+    let rows: Vec<Vec<String>> = outcome.metrics.iter().filter(|m| m.key).map(|m| vec![m.name.to_owned(), format_si(m.value, &m.display, 5), m.doc.to_owned()]).collect();
+    out.push_str(&columns(&rows, &[Align::Left, Align::Right, Align::Left]));
+    if !outcome.warnings.is_empty() {
+        out.push('\n');
+        for warning in &outcome.warnings {
+            let _ = writeln!(out, "warning[{}]: {}", warning.code, warning.message);
+        }
+    }
+    out.push('\n');
+    let accuracy = outcome.error_estimate.map_or_else(String::new, |e| format!("; estimated error {} of the largest force", format_number(e, 2)));
+    let _ = writeln!(out, "{}: {}{accuracy}", outcome.status.kind.word(), outcome.status.message);
+    if let Some(advice) = &outcome.status.advice {
+        let _ = writeln!(out, "  help: {advice}");
+    }
+    let count = |state| outcome.checks.iter().filter(|c| c.required && c.state == state).count();
+    let (missed, unknown, met) = (count(CheckState::Missed), count(CheckState::NotAssessed), count(CheckState::Met));
+    if missed + unknown + met > 0 {
+        let _ = writeln!(out, "requirements: {met} met, {missed} missed, {unknown} not assessed");
+    }
+    out
+}
+
+fn requirement_table(checks: &[Check], colour: bool) -> String {
+    let mut rows = vec![["", "requirement", "found", "limit", "margin", "code"].map(str::to_owned).to_vec()];
+    for check in checks {
+        let mark = match check.state {
+            CheckState::Met => "✓ met",
+            CheckState::Missed => "✗ missed",
+            CheckState::NotAssessed => "? not assessed",
+        };
+        let sign = if check.sense == Sense::AtMost { "≤" } else { "≥" };
+        let show = |value: f64| format_si(value, &check.display, 4);
+        rows.push(vec![
+            mark.to_owned(),
+            check.title.clone(),
+            check.value.map_or_else(|| "–".to_owned(), show),
+            check.limit.map_or_else(|| "–".to_owned(), |l| format!("{sign} {}", show(l))),
+            check.margin.map_or_else(|| "–".to_owned(), |m| format!("{:+.1} %", 100.0 * m)),
+            check.code.to_owned(),
+        ]);
+    }
+    let text = columns(&rows, &[Align::Left, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
+    if !colour {
+        return text;
+    }
+    text.replace("✓ met", "\u{1b}[32m✓ met\u{1b}[0m").replace("✗ missed", "\u{1b}[31m✗ missed\u{1b}[0m").replace("? not assessed", "\u{1b}[33m? not assessed\u{1b}[0m")
+}

@@ -1,0 +1,47 @@
+//! A progress bar on a terminal, for work that takes longer than a moment.
+
+use std::io::{IsTerminal, stderr};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Work shorter than this shows nothing.
+const PATIENCE: Duration = Duration::from_millis(300);
+const STEPS: u64 = 1000;
+
+/// Shows how far a piece of work is.
+pub struct Progress {
+    started: Instant,
+    what: &'static str,
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// Progress of a piece of work that starts now.
+    pub fn new(what: &'static str) -> Self {
+        Self { started: Instant::now(), what, bar: None }
+    }
+
+    /// Shows a finished fraction.
+    pub fn show(&mut self, fraction: f64) {
+        if self.bar.is_none() && self.started.elapsed() >= PATIENCE && stderr().is_terminal() {
+            let bar = ProgressBar::new(STEPS);
+            if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent} % {eta} left") {
+                bar.set_style(style);
+            }
+            bar.set_message(self.what);
+            self.bar = Some(bar);
+        }
+        if let Some(bar) = &self.bar {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]
+            bar.set_position((fraction.clamp(0.0, 1.0) * STEPS as f64) as u64);
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn done(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

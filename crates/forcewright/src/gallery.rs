@@ -1,0 +1,70 @@
+//! The gallery: example projects that come with the library.
+
+/// An example project.
+#[derive(Clone, Copy, Debug)]
+pub struct Example {
+    /// Name: family and file, `compliant/lan-table3`.
+    pub name: &'static str,
+    /// The project file.
+    pub text: &'static str,
+}
+
+macro_rules! examples {
+    ($($name:literal),* $(,)?) => {
+        &[$(Example { name: $name, text: include_str!(concat!("../../../examples/", $name, ".toml")) }),*]
+    };
+}
+
+/// Every example, in the order in which to look at them.
+pub const EXAMPLES: &[Example] = examples!["compliant/lan-table3", "compliant/lan-thin"];
+
+/// An example by its name, with or without its family.
+pub fn find(name: &str) -> Option<&'static Example> {
+    let plain = name.trim_end_matches(".toml");
+    EXAMPLES.iter().find(|e| e.name == plain || e.name.rsplit('/').next() == Some(plain))
+}
+
+impl Example {
+    /// The file's name: `lan-table3.toml`.
+    pub fn file_name(&self) -> String {
+        format!("{}.toml", self.name.rsplit('/').next().unwrap_or(self.name))
+    }
+
+    /// The title that the file gives itself.
+    pub fn title(&self) -> &'static str {
+        let line = self.text.lines().find_map(|l| l.strip_prefix("title = \""));
+        line.and_then(|l| l.split('"').next()).unwrap_or("")
+    }
+
+    /// The example that this one extends, if it does.
+    pub fn base(&self) -> Option<&'static Self> {
+        let line = self.text.lines().find_map(|l| l.strip_prefix("extends = \""))?;
+        find(line.split('"').next()?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_example_file_is_in_the_gallery_and_has_a_title() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+        let mut files = Vec::new();
+        for family in std::fs::read_dir(root).unwrap() {
+            let family = family.unwrap();
+            for file in std::fs::read_dir(family.path()).unwrap() {
+                let file = file.unwrap().file_name().into_string().unwrap();
+                if let Some(stem) = file.strip_suffix(".toml") {
+                    files.push(format!("{}/{stem}", family.file_name().into_string().unwrap()));
+                }
+            }
+        }
+        files.sort();
+        let mut listed: Vec<String> = EXAMPLES.iter().map(|e| e.name.to_owned()).collect();
+        listed.sort();
+        assert_eq!(files, listed);
+        assert!(EXAMPLES.iter().all(|e| !e.title().is_empty()));
+        assert_eq!(find("lan-thin").and_then(Example::base).map(|e| e.name), Some("compliant/lan-table3"));
+    }
+}

@@ -1,0 +1,140 @@
+//! From a project file to a report.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Severity, Sources};
+use forcewright_base::text::closest;
+use forcewright_contract::family::{Family, Progress, Understood};
+use forcewright_contract::project::{Choices, Files, Project};
+use forcewright_model::{Report, Warning};
+use sha2::{Digest, Sha256};
+
+use crate::{FAMILIES, VERSION};
+
+/// A project that can be solved.
+pub struct Loaded {
+    /// The family that understood it.
+    pub family: &'static dyn Family,
+    /// What was read, with warnings.
+    pub project: Project,
+    /// SHA-256 of everything read; for a file that stands alone, that of the file.
+    pub input_sha256: String,
+    understood: Box<dyn Understood>,
+}
+
+/// A project that cannot be used, and why.
+#[derive(Clone, Debug)]
+pub struct Refused {
+    /// Everything found wrong.
+    pub diagnostics: Diagnostics,
+    /// The texts that it points into.
+    pub sources: Sources,
+    /// Whether a file could not be read at all, as opposed to not understood.
+    pub file_missing: bool,
+}
+
+impl Refused {
+    /// Text for a terminal, with lines of source.
+    pub fn render(&self, colour: bool) -> String {
+        self.diagnostics.render(&self.sources, colour)
+    }
+
+    /// How many errors there are.
+    pub fn errors(&self) -> usize {
+        self.diagnostics.in_file_order().iter().filter(|d| d.severity == Severity::Error).count()
+    }
+}
+
+impl Loaded {
+    /// Reads and understands a project file.
+    ///
+    /// # Errors
+    /// [`Refused`] with everything that is wrong, in file order.
+    pub fn from_file(files: &dyn Files, path: &Path, choices: &Choices) -> Result<Self, Refused> {
+        Self::from_project(Project::load(files, path, choices))
+    }
+
+    /// The same for a text in memory, which cannot extend other files.
+    ///
+    /// # Errors
+    /// [`Refused`] with everything that is wrong, in file order.
+    pub fn from_text(name: &str, text: &str, choices: &Choices) -> Result<Self, Refused> {
+        Self::from_project(Project::from_text(name, text, choices))
+    }
+
+    fn from_project(mut project: Project) -> Result<Self, Refused> {
+        let family = family_of(&mut project);
+        let understood = family.and_then(|f| f.understand(&mut project));
+        match (family, understood) {
+            (Some(family), Some(understood)) if !project.diagnostics.has_errors() => {
+                Ok(Self { family, input_sha256: hash(&project.sources), project, understood })
+            }
+            _ => {
+                if !project.diagnostics.has_errors() {
+                    project.diagnostics.push(Diagnostic::placeless("E0509", "the project was not understood").help("please report this with the file"));
+                }
+                Err(Refused { diagnostics: project.diagnostics, sources: project.sources, file_missing: project.file_missing })
+            }
+        }
+    }
+
+    /// Analyses the project. `input_name` is the file as the user named it, `command` the command that repeats this run.
+    pub fn solve(&self, input_name: &str, command: &str, progress: Progress<'_>) -> Report {
+        let mut analysis = self.understood.analyse(progress);
+        let sources = &self.project.sources;
+        for warning in self.project.diagnostics.warnings() {
+            let place = warning.span.and_then(|s| Some((sources.get(s.source)?, sources.line_column(s)?)));
+            let place = place.map_or_else(String::new, |(source, (line, _))| format!("{}:{line}: ", source.name));
+            analysis.outcome.warnings.push(Warning { code: warning.code, message: format!("{place}{}", warning.message) });
+        }
+        Report {
+            outcome: analysis.outcome,
+            family: self.family.title().to_owned(),
+            version: VERSION.to_owned(),
+            variant: self.project.choices.variant.clone(),
+            input_name: input_name.to_owned(),
+            input_sha256: self.input_sha256.clone(),
+            command: command.to_owned(),
+            figures: analysis.figures,
+            parameters: self.understood.parameters(),
+            model: analysis.model,
+            limits: analysis.limits,
+        }
+    }
+}
+
+/// The family that the project names; reports a missing or unknown one.
+fn family_of(project: &mut Project) -> Option<&'static dyn Family> {
+    let ids = || FAMILIES.iter().map(|f| f.id());
+    let all = ids().map(|id| format!("\"{id}\"")).collect::<Vec<_>>().join(", ");
+    let Some((id, span)) = project.mechanism().map(|(id, span)| (id.to_owned(), span)) else {
+        // A file that could not be read, or not parsed, has been reported already.
+        if !project.diagnostics.has_errors() {
+            let message = "`mechanism` is missing";
+            project.diagnostics.push(Diagnostic::error("E0302", project.root, message).label("from this file").help(format!("add `mechanism = …`, one of {all}")));
+        }
+        return None;
+    };
+    let family = crate::family(&id);
+    if family.is_none() {
+        let help = closest(&id, ids()).map_or_else(|| format!("one of {all}"), |near| format!("did you mean \"{near}\"? ({all})"));
+        project.diagnostics.push(Diagnostic::error("E0309", span, "no such mechanism").label("not known").help(help));
+    }
+    family
+}
+
+fn hash(sources: &Sources) -> String {
+    let mut hasher = Sha256::new();
+    for (index, source) in sources.iter().enumerate() {
+        if index > 0 {
+            // Contents, not paths: the same project has the same hash wherever it lies. A file that stands alone has that of its bytes.
+            hasher.update([0]);
+        }
+        hasher.update(source.text.as_bytes());
+    }
+    hasher.finalize().iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}

@@ -1,0 +1,289 @@
+//! From a design to its behaviour: the equilibrium path, the force curve, the stress, the metrics.
+
+use forcewright_base::units::Unit;
+use forcewright_beam::{NetworkError, Path, PeakStress, Point, Settings, Status, trace};
+use forcewright_contract::family::Progress;
+use forcewright_model as model;
+
+use crate::design::Design;
+use crate::force_curve::{ForceCurve, Interval};
+use crate::metrics::METRICS;
+
+/// Stations of the first attempt, and the most that are tried to keep the interpolation between them below its share of the error.
+const STATIONS: [usize; 4] = [128, 256, 512, 1024];
+/// Interpolation error accepted, relative to the largest force.
+const INTERPOLATION: f64 = 1e-7;
+/// The paper's operational range starts where the force reaches this fraction of its end value (section II).
+pub const RANGE_FRACTION: f64 = 0.95;
+
+/// What a design does. SI; forces and energies are those of the whole layout.
+#[derive(Clone, Debug)]
+pub struct Behaviour {
+    /// The path of the drawn network.
+    pub path: Path,
+    /// Force over displacement of the whole layout, if at least two stations were reached.
+    pub curve: Option<ForceCurve>,
+    /// Copies of the drawn network.
+    pub copies: f64,
+    /// Whether the whole travel was reached.
+    pub whole: bool,
+    /// Interpolation error of the curve relative to the largest force.
+    pub interpolation_error: f64,
+}
+
+/// The largest stress of a path and where it is.
+#[derive(Clone, Copy, Debug)]
+pub struct LargestStress {
+    /// Displacement, m.
+    pub at_m: f64,
+    /// Index of the beam.
+    pub beam: usize,
+    /// The stress.
+    pub peak: PeakStress,
+}
+
+impl Behaviour {
+    /// Solves a design.
+    ///
+    /// # Errors
+    /// [`NetworkError`] if the network makes no sense; a design that was resolved has been checked.
+    pub fn of(design: &Design, progress: Progress<'_>) -> Result<Self, NetworkError> {
+        let settings = Settings { theory: design.theory, accuracy: design.accuracy, ..Settings::default() };
+        let mut result = None;
+        for count in STATIONS {
+            let stations: Vec<f64> = (0..=count).map(|i| design.travel_m * i as f64 / count as f64).collect();
+            let path = trace(&design.network, &stations, &settings, progress)?;
+            let behaviour = Self::from_path(path, design.copies());
+            let enough = behaviour.interpolation_error <= INTERPOLATION || !behaviour.whole;
+            result = Some(behaviour);
+            if enough {
+                break;
+            }
+        }
+        result.ok_or(NetworkError::NoBeams)
+    }
+
+    fn from_path(path: Path, copies: f64) -> Self {
+        let whole = matches!(path.status, Status::Complete | Status::NotResolved { .. });
+        let pick = |f: fn(&Point) -> f64, scale: f64| path.points.iter().map(|p| scale * f(p)).collect::<Vec<_>>();
+        let curve = (path.points.len() >= 2).then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)));
+        let largest = path.points.iter().map(|p| copies * p.force.abs()).fold(0.0, f64::max);
+        let interpolation_error = curve.as_ref().map_or(0.0, |c| if largest > 0.0 { c.error_n() / largest } else { 0.0 });
+        Self { path, curve, copies, whole, interpolation_error }
+    }
+
+    /// The largest stress up to the end of the path, refined between stations where it is largest inside.
+    pub fn largest_stress(&self) -> Option<LargestStress> {
+        let of = |point: &Point| point.peak_stress().map(|(beam, peak)| LargestStress { at_m: point.displacement, beam, peak });
+        let stations: Vec<LargestStress> = self.path.points.iter().filter_map(of).collect();
+        let best = (0..stations.len()).reduce(|b, i| if stations[i].peak.stress_pa > stations[b].peak.stress_pa { i } else { b })?;
+        let inside = best > 0 && best + 1 < stations.len();
+        if !inside {
+            return stations.get(best).copied();
+        }
+        let value = |x: f64| self.path.at(x).ok().and_then(|p| of(&p));
+        let (left, right) = (stations[best - 1].at_m, stations[best + 1].at_m);
+        let found = forcewright_base::roots::minimise(|x| value(x).map_or(f64::NAN, |s| -s.peak.stress_pa), left, right, 1e-6 * right);
+        value(found.x).filter(|s| s.peak.stress_pa > stations[best].peak.stress_pa).or(stations.get(best).copied())
+    }
+
+    /// The displacement at which the stress first reaches a value, m.
+    pub fn travel_at_stress(&self, stress_pa: f64) -> Option<f64> {
+        let excess = |p: &Point| p.peak_stress().map_or(f64::NAN, |(_, peak)| peak.stress_pa - stress_pa);
+        let first = self.path.points.iter().position(|p| excess(p) >= 0.0)?;
+        let (before, after) = (self.path.points.get(first.checked_sub(1)?)?, &self.path.points[first]);
+        let at = |x: f64| self.path.at(x).map_or(f64::NAN, |p| excess(&p));
+        forcewright_base::roots::root(at, before.control, after.control, 1e-12 * after.control).ok()
+    }
+
+    /// Least tangent stiffness of the whole layout over the path, N/m, and where, m.
+    pub fn least_stiffness(&self) -> Option<(f64, f64)> {
+        let points = &self.path.points;
+        let best = (0..points.len()).reduce(|b, i| if points[i].stiffness < points[b].stiffness { i } else { b })?;
+        let station = (self.copies * points[best].stiffness, points[best].displacement);
+        if best == 0 || best + 1 >= points.len() {
+            return Some(station);
+        }
+        let value = |x: f64| self.path.at(x).map_or(f64::NAN, |p| p.stiffness);
+        let (left, right) = (points[best - 1].control, points[best + 1].control);
+        let found = forcewright_base::roots::minimise(value, left, right, 1e-6 * right);
+        Some(if self.copies * found.value < station.0 { (self.copies * found.value, found.x) } else { station })
+    }
+
+    /// Where a force-driven device would jump: from the first local maximum, to the displacement beyond it that carries the same force
+    /// again, if the path reaches it.
+    pub fn jump(&self) -> Option<(f64, Option<f64>)> {
+        let curve = self.curve.as_ref()?;
+        let (from, level) = curve.extrema().0?;
+        let slack = 1e-6 * curve.end();
+        Some((from, curve.crossings(level).into_iter().find(|x| *x > from + slack)))
+    }
+}
+
+/// What is needed again for checks and pictures.
+#[derive(Clone, Debug, Default)]
+pub struct Measured {
+    /// Values by the index of [`METRICS`]; `None` where the metric has no value for this design.
+    values: Vec<Option<f64>>,
+    /// The longest interval within the required band, around the nominal force if one is given.
+    pub usable: Option<Interval>,
+    /// Largest stress and its place.
+    pub stress: Option<LargestStress>,
+    /// Least stiffness and its displacement.
+    pub stiffness: Option<(f64, f64)>,
+}
+
+impl Measured {
+    /// A metric by name.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        let index = METRICS.iter().position(|m| m.name == name)?;
+        self.values.get(index).copied().flatten()
+    }
+
+    /// A metric by its index.
+    pub fn value(&self, index: usize) -> Option<f64> {
+        self.values.get(index).copied().flatten()
+    }
+
+    fn set(&mut self, name: &str, value: impl Into<Option<f64>>) {
+        if let Some(index) = METRICS.iter().position(|m| m.name == name) {
+            self.values[index] = value.into();
+        }
+    }
+}
+
+/// Band used for the flat interval where the project asks for none: the paper's 5 % (section II).
+const PAPER_BAND: f64 = 0.05;
+
+/// Every metric that the behaviour has.
+pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
+    let mut m = Measured { values: vec![None; METRICS.len()], ..Measured::default() };
+    m.set("length_ratio_max", length_ratio(design));
+    m.set("mass", design.density_kg_per_m3.map(|density| density * design.copies() * volume_m3(design)));
+    let Some(curve) = &behaviour.curve else { return m };
+    m.set("stiffness_initial", behaviour.path.points.first().map(|p| behaviour.copies * p.stiffness));
+    let (max, min) = curve.extrema();
+    m.set("force_local_max", max.map(|(_, f)| f));
+    m.set("force_local_max_at", max.map(|(x, _)| x));
+    m.set("force_local_min", min.map(|(_, f)| f));
+    m.set("force_local_min_at", min.map(|(x, _)| x));
+    if let Some(allowable_pa) = design.allowable_pa() {
+        m.set("travel_at_allowable_stress", behaviour.travel_at_stress(allowable_pa));
+    }
+    // The rest is about the whole travel: a path that ends before has no such numbers.
+    if !behaviour.whole {
+        return m;
+    }
+    let travel = curve.end();
+    m.set("force_at_end", curve.force(travel));
+    m.set("energy_at_end", behaviour.path.points.last().map(|p| behaviour.copies * p.energy_j));
+    let start = curve.range_start(RANGE_FRACTION);
+    m.set("range_start", start);
+    m.set("range_ratio", start.map(|c| (travel - c) / travel));
+    let force = design.requirements.as_ref().and_then(|r| r.force);
+    let band = force.map_or(PAPER_BAND, |(band, _)| band);
+    let flat = curve.longest_flat(band);
+    m.set("flat_start", flat.map(|i| i.start));
+    m.set("flat_end", flat.map(|i| i.end));
+    m.set("flat_ratio", flat.map(|i| i.length() / travel));
+    m.set("flat_force", flat.map(|i| { let (hi, lo) = curve.extent(i); f64::midpoint(hi, lo) }));
+    m.usable = flat;
+    if let Some((band, Some(nominal))) = force {
+        let within = curve.longest_within(nominal * (1.0 - band), nominal * (1.0 + band));
+        m.set("band_start", within.map(|i| i.start));
+        m.set("band_end", within.map(|i| i.end));
+        m.set("band_ratio", within.map_or(0.0, |i| i.length() / travel));
+        m.usable = within;
+    }
+    m.stiffness = behaviour.least_stiffness();
+    m.set("stiffness_min", m.stiffness.map(|(k, _)| k));
+    m.stress = behaviour.largest_stress();
+    m.set("stress_max", m.stress.map(|s| s.peak.stress_pa));
+    m.set("safety_factor", m.stress.and_then(|s| Some(design.yield_pa? / s.peak.stress_pa)).filter(|f| f.is_finite()));
+    m
+}
+
+fn length_ratio(design: &Design) -> Option<f64> {
+    let ratio = |b: &forcewright_beam::Beam| {
+        let [x, y] = b.shape.chord_m();
+        b.shape.length_m() / forcewright_base::maths::hypot(x, y)
+    };
+    design.network.beams.iter().map(ratio).reduce(f64::max)
+}
+
+fn volume_m3(design: &Design) -> f64 {
+    design.network.beams.iter().map(|b| b.section.area_m2() * b.shape.length_m()).sum()
+}
+
+/// The unit in which people are shown a metric.
+pub fn display_unit(design: &Design, index: usize) -> Unit {
+    use forcewright_base::units::Dimension as D;
+    let Some(info) = METRICS.get(index) else { return Unit::si(D::Ratio) };
+    let limit = design.requirements.iter().flat_map(|r| &r.limits).find(|(i, ..)| *i == index).map(|(.., unit)| unit.clone());
+    let named = |symbol: &str| Unit::parse(symbol).unwrap_or_else(|_| Unit::si(info.dimension));
+    limit.unwrap_or_else(|| match info.dimension {
+        D::Length => design.units.displacement.clone(),
+        D::Force => design.units.force.clone(),
+        D::Stress => design.units.stress.clone(),
+        D::Stiffness => design.units.stiffness.clone(),
+        D::Energy => named("mJ"),
+        D::Mass => named("g"),
+        D::Ratio if info.name == "range_ratio" || info.name == "flat_ratio" || info.name == "band_ratio" => named("%"),
+        other => Unit::si(other),
+    })
+}
+
+/// The metrics as outputs see them.
+pub fn metrics(design: &Design, measured: &Measured) -> Vec<model::Metric> {
+    METRICS
+        .iter()
+        .enumerate()
+        .filter_map(|(index, info)| {
+            let value = measured.value(index)?;
+            Some(model::Metric { name: info.name, value, dimension: info.dimension, display: display_unit(design, index), doc: info.doc, key: info.key })
+        })
+        .collect()
+}
+
+/// How the solve ended, in words.
+pub fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
+    use model::StatusKind as K;
+    let show = |x: f64| forcewright_base::units::format_si(x, &design.units.displacement, 6);
+    let travel = show(design.travel_m);
+    let beam = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
+    let node = |i: usize| design.node_names.get(i).map_or("?", String::as_str);
+    let (kind, message, advice) = match behaviour.path.status {
+        Status::Complete => (K::Complete, format!("the whole travel of {travel} was computed"), None),
+        Status::NotResolved { error_estimate, accuracy } => (
+            K::ReducedAccuracy,
+            format!("the forces are accurate to about {error_estimate:.1e} of the largest one, not to the {accuracy:.1e} asked for"),
+            Some("split strongly bent beams, or ask for less by `model.accuracy`".to_owned()),
+        ),
+        Status::NoEquilibriumBeyond { control } => (
+            K::NoEquilibriumBeyond,
+            format!("there is no neighbouring equilibrium beyond Δ = {}: the mechanism snaps before the travel of {travel}", show(control)),
+            Some(format!("shorten `load.travel` to less than {}, or change the shape", show(control))),
+        ),
+        Status::StepTooSmall { control } => (
+            K::NotConverged,
+            format!("the solver's steps became too small at Δ = {}", show(control)),
+            Some("the equilibrium may branch there: break the symmetry of the design a little, or shorten `load.travel`".to_owned()),
+        ),
+        Status::OverConstrained { beam: b } => (
+            K::NotConverged,
+            format!("the force in beam `{}` is undetermined at rest: inextensible beams are over-constrained here", beam(b)),
+            Some("use `model.beam = \"reissner\"`, or bend the beam a little".to_owned()),
+        ),
+        Status::Mechanism { node: n } => {
+            (K::NotConverged, format!("node `{}` can move at rest without a force", node(n)), Some("add a support, or make a hinge rigid".to_owned()))
+        }
+        Status::IterationLimit { control, limit } => (
+            K::NotConverged,
+            format!("stopped at Δ = {} after {limit} Newton iterations", show(control)),
+            Some("shorten `load.travel`, or ask for less by `model.accuracy`".to_owned()),
+        ),
+        Status::Stopped { control } => (K::Interrupted, format!("stopped on request at Δ = {}", show(control)), None),
+        _ => (K::NotConverged, "the solver stopped".to_owned(), None),
+    };
+    model::Status { kind, message, advice }
+}

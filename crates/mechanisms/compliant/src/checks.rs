@@ -1,0 +1,266 @@
+//! Requirements against what was found.
+
+use forcewright_base::units::{Dimension, Unit, format_number, format_si};
+use forcewright_model::{Check, CheckState, Sense};
+
+use crate::analysis::{Behaviour, Measured, display_unit};
+use crate::design::{Design, Requirements, StressLimit};
+use crate::metrics::METRICS;
+
+/// Every requirement of the project, in the order of the language.
+pub fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Check> {
+    let Some(requirements) = &design.requirements else { return Vec::new() };
+    let mut all = Vec::new();
+    let context = Context { design, behaviour, measured, requirements };
+    all.extend(context.force());
+    all.extend(context.travel());
+    all.extend(context.stress());
+    all.extend(context.stiffness());
+    all.extend(context.limits());
+    all
+}
+
+struct Context<'a> {
+    design: &'a Design,
+    behaviour: &'a Behaviour,
+    measured: &'a Measured,
+    requirements: &'a Requirements,
+}
+
+/// What a check compares, before its state is known.
+struct Comparison {
+    code: &'static str,
+    name: String,
+    title: String,
+    value: Option<f64>,
+    limit: Option<f64>,
+    sense: Sense,
+    dimension: Dimension,
+    display: Unit,
+    /// Takes the place of the limit's size in the margin where the limit is zero.
+    scale: f64,
+    basis: String,
+    /// What would mend a miss.
+    fix: String,
+    /// Why it could not be assessed, where it could not.
+    missing: String,
+}
+
+impl Comparison {
+    fn judge(self) -> Check {
+        let (state, margin) = match (self.value, self.limit) {
+            (Some(value), Some(limit)) => {
+                let margin = Check::margin_of(value, limit, self.sense, self.scale);
+                // Written so that a value that is not a number misses.
+                (if margin >= 0.0 { CheckState::Met } else { CheckState::Missed }, Some(margin))
+            }
+            _ => (CheckState::NotAssessed, None),
+        };
+        let advice = match state {
+            CheckState::Met => None,
+            CheckState::Missed => Some(self.fix),
+            CheckState::NotAssessed => Some(self.missing),
+        };
+        Check {
+            code: self.code,
+            name: self.name,
+            title: self.title,
+            required: true,
+            state,
+            value: self.value,
+            limit: self.limit,
+            sense: self.sense,
+            dimension: self.dimension,
+            display: self.display,
+            margin,
+            basis: self.basis,
+            advice,
+        }
+    }
+}
+
+fn percent() -> Unit {
+    Unit::parse("%").unwrap_or_else(|_| Unit::si(Dimension::Ratio))
+}
+
+impl Context<'_> {
+    fn unreached(&self) -> String {
+        "the path ends before the full travel; see the status".to_owned()
+    }
+
+    /// COMP001: the band needed over the best window of the required stroke.
+    fn force(&self) -> Option<Check> {
+        let (band, nominal) = self.requirements.force?;
+        let curve = self.behaviour.curve.as_ref().filter(|_| self.behaviour.whole);
+        let window_m = self.requirements.travel_m.unwrap_or(0.0);
+        let best = curve.and_then(|c| c.best_window(window_m, nominal)).filter(|(_, d)| d.is_finite());
+        let units = &self.design.units;
+        let stroke = format_si(window_m, &units.displacement, 4);
+        let around = nominal.map_or_else(|| "around a free level".to_owned(), |f| format!("around {}", format_si(f, &units.force, 4)));
+        let over = if window_m > 0.0 { format!(" over the best {stroke}") } else { String::new() };
+        let fix = match (best, nominal, curve) {
+            (Some((interval, deviation)), Some(level), Some(curve)) => {
+                let (hi, lo) = curve.extent(interval);
+                let middle = f64::midpoint(hi, lo);
+                let free = (hi - lo) / (hi + lo);
+                let scale = level / middle;
+                format!(
+                    "the best stroke needs ±{} %; its own level is {} with ±{} %. Force is proportional to `design.depth`: multiply it by {}",
+                    format_number(100.0 * deviation, 3),
+                    format_si(middle, &units.force, 4),
+                    format_number(100.0 * free, 3),
+                    format_number(scale, 4),
+                )
+            }
+            _ => "ask for a shorter `travel` or a wider `band`, or change the shape".to_owned(),
+        };
+        let missing = if self.behaviour.whole { format!("the required stroke of {stroke} is longer than the travel") } else { self.unreached() };
+        let comparison = Comparison {
+            code: "COMP001",
+            name: "force".to_owned(),
+            title: format!("Force deviation {around}{over}"),
+            value: best.map(|(_, deviation)| deviation),
+            limit: Some(band),
+            sense: Sense::AtMost,
+            dimension: Dimension::Ratio,
+            display: percent(),
+            scale: 1.0,
+            basis: "largest |F/level − 1| over the stroke, at the place of the travel where it is smallest".to_owned(),
+            fix,
+            missing,
+        };
+        Some(comparison.judge())
+    }
+
+    /// COMP003: the longest stroke within the band.
+    fn travel(&self) -> Option<Check> {
+        let wanted = self.requirements.travel_m?;
+        let usable = self.measured.usable.map(|i| i.length());
+        // No interval at all is a stroke of zero, if the path was computed and a band was asked for.
+        let value = if self.behaviour.whole && self.requirements.force.is_some() { Some(usable.unwrap_or(0.0)) } else { None };
+        let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
+        let comparison = Comparison {
+            code: "COMP003",
+            name: "travel".to_owned(),
+            title: "Usable stroke inside the band".to_owned(),
+            value,
+            limit: Some(wanted),
+            sense: Sense::AtLeast,
+            dimension: Dimension::Length,
+            display: self.design.units.displacement.clone(),
+            scale: wanted,
+            basis: "longest displacement interval on which the force stays inside the band".to_owned(),
+            fix: format!("the band holds over {}; a wider `band`, a longer `load.travel` or another shape is needed for {}", show(usable.unwrap_or(0.0)), show(wanted)),
+            missing: if self.requirements.force.is_none() { "`requirements.force.band` is not given".to_owned() } else { self.unreached() },
+        };
+        Some(comparison.judge())
+    }
+
+    /// COMP002: the largest stress.
+    fn stress(&self) -> Option<Check> {
+        let wanted = self.requirements.stress?;
+        let found = self.measured.stress;
+        let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
+        let place = found.map_or_else(String::new, |s| {
+            let beam = self.design.beam_names.get(s.beam).map_or("?", String::as_str);
+            format!(" (beam {beam}, u = {}, Δ = {})", format_number(s.peak.u, 3), show(s.at_m))
+        });
+        let until = self.measured.get("travel_at_allowable_stress").map_or_else(String::new, |x| format!("keep `load.travel` below {}, or ", show(x)));
+        let ratio = found.zip(self.design.allowable_pa()).map_or(1.0, |(s, allowed)| s.peak.stress_pa / allowed);
+        let basis = match wanted {
+            StressLimit::SafetyFactor(factor) => format!("yield stress over {}; Lan, Wang & Chen 2010, eq. (5) and constraint (iv)", format_number(factor, 4)),
+            StressLimit::Stress(_) => "stress given in the requirements; Lan, Wang & Chen 2010, eq. (5)".to_owned(),
+        };
+        let comparison = Comparison {
+            code: "COMP002",
+            name: "stress".to_owned(),
+            title: format!("Largest stress{place}"),
+            value: found.map(|s| s.peak.stress_pa),
+            limit: self.design.allowable_pa(),
+            sense: Sense::AtMost,
+            dimension: Dimension::Stress,
+            display: self.design.units.stress.clone(),
+            scale: 1.0,
+            basis,
+            fix: format!("{until}make the beams thinner: stress follows `design.thickness` (× {}), and `depth` × {} keeps the force", format_number(1.0 / ratio, 3), format_number(ratio * ratio * ratio, 3)),
+            missing: if self.design.yield_pa.is_none() { "the yield stress is not known; give `material.yield_stress`".to_owned() } else { self.unreached() },
+        };
+        Some(comparison.judge())
+    }
+
+    /// COMP004 and COMP005: slopes of the force.
+    fn stiffness(&self) -> Vec<Check> {
+        let scale = self.measured.get("stiffness_initial").map_or(1.0, f64::abs);
+        let slope = |code, name: &str, title: String, value, limit, sense, fix: String| Comparison {
+            code,
+            name: name.to_owned(),
+            title,
+            value,
+            limit: Some(limit),
+            sense,
+            dimension: Dimension::Stiffness,
+            display: self.design.units.stiffness.clone(),
+            scale,
+            basis: "dF/dΔ from the tangent of the equilibrium equations; where the limit is zero, the margin is relative to the initial stiffness".to_owned(),
+            fix,
+            missing: self.unreached(),
+        };
+        let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
+        let at = self.measured.stiffness.map_or_else(String::new, |(_, x)| format!(" (Δ = {})", show(x)));
+        let jump = match self.behaviour.jump() {
+            Some((from, Some(to))) => format!("a force-driven device jumps from Δ = {} to {}; ", show(from), show(to)),
+            Some((from, None)) => format!("a force-driven device jumps at Δ = {} beyond the travel; ", show(from)),
+            None => String::new(),
+        };
+        let least = self.measured.stiffness.map(|(k, _)| k);
+        let mut all = vec![
+            slope(
+                "COMP004",
+                "stiffness",
+                format!("Least stiffness{at}"),
+                least,
+                self.requirements.stiffness_min,
+                Sense::AtLeast,
+                format!("{jump}where that is no harm, allow it by `stiffness = {{ min = … }}`; otherwise change the shape"),
+            )
+            .judge(),
+        ];
+        if let Some(limit) = self.requirements.stiffness_max {
+            let largest = self.behaviour.whole.then(|| self.behaviour.path.points.iter().map(|p| self.behaviour.copies * p.stiffness).fold(f64::NEG_INFINITY, f64::max));
+            all.push(slope("COMP005", "stiffness_max", "Largest stiffness".to_owned(), largest, limit, Sense::AtMost, "change the shape, or allow it".to_owned()).judge());
+        }
+        all
+    }
+
+    /// COMP006: limits on metrics.
+    fn limits(&self) -> Vec<Check> {
+        let mut all = Vec::new();
+        for (index, min, max, _) in &self.requirements.limits {
+            let Some(info) = METRICS.get(*index) else { continue };
+            for (limit, sense, suffix) in [(min, Sense::AtLeast, "at least"), (max, Sense::AtMost, "at most")] {
+                let Some(limit) = *limit else { continue };
+                let value = self.measured.value(*index);
+                let comparison = Comparison {
+                    code: "COMP006",
+                    name: info.name.to_owned(),
+                    title: format!("{} ({suffix})", info.name),
+                    value,
+                    limit: Some(limit),
+                    sense,
+                    dimension: info.dimension,
+                    display: display_unit(self.design, *index),
+                    scale: 1.0,
+                    basis: info.doc.to_owned(),
+                    fix: "change the design, or relax the limit".to_owned(),
+                    missing: if matches!(info.name, "clearance_min" | "envelope_margin") {
+                        "this version does not compute it".to_owned()
+                    } else {
+                        "the design has no such value; see the status and the meaning of the metric".to_owned()
+                    },
+                };
+                all.push(comparison.judge());
+            }
+        }
+        all
+    }
+}

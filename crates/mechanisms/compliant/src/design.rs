@@ -1,0 +1,587 @@
+//! From what was typed to a design: references checked, catalogue values in place, SI numbers.
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
+use forcewright_base::text::closest;
+use forcewright_base::units::{Dimension, Quantity, Unit};
+use forcewright_beam::{Beam, Drive, Joint, Network, NetworkError, Node, Rotation, Section, Shape, Support, Theory};
+use forcewright_contract::describe::{Located, Member, Origin, Slot};
+use forcewright_elements::materials::{self, Property};
+
+use crate::metrics::METRICS;
+use crate::spec::{self, Spec};
+
+/// A design, ready to be solved. SI units.
+#[derive(Clone, Debug)]
+pub struct Design {
+    /// The project's title.
+    pub title: String,
+    /// Nodes, beams, supports and the drive of the drawn network; members in the order of their names.
+    pub network: Network,
+    /// Names of the nodes, in the order of the network.
+    pub node_names: Vec<String>,
+    /// Names of the beams, in the order of the network.
+    pub beam_names: Vec<String>,
+    /// The mirror line, if there is a mirrored half.
+    pub mirror: Option<Mirror>,
+    /// The moved node.
+    pub load_node: usize,
+    /// Unit vector of the displacement.
+    pub direction: [f64; 2],
+    /// Largest displacement d, m.
+    pub travel_m: f64,
+    /// Yield stress, Pa, if known.
+    pub yield_pa: Option<f64>,
+    /// Density, kg/m³, if known.
+    pub density_kg_per_m3: Option<f64>,
+    /// Beam model.
+    pub theory: Theory,
+    /// Error allowed, relative to the largest force.
+    pub accuracy: f64,
+    /// What it must do; `None` if the project asks for nothing.
+    pub requirements: Option<Requirements>,
+    /// Units in which people are shown results.
+    pub units: DisplayUnits,
+    /// Keys of works that the material data come from, in words.
+    pub material_origin: String,
+}
+
+impl Design {
+    /// How many copies of the drawn network share the force.
+    pub fn copies(&self) -> f64 {
+        if self.mirror.is_some() { 2.0 } else { 1.0 }
+    }
+}
+
+/// A mirror line parallel to an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mirror {
+    /// x = the value, m.
+    X(f64),
+    /// y = the value, m.
+    Y(f64),
+}
+
+impl Mirror {
+    /// The mirror image of a point, m.
+    pub fn image(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::X(at) => [2.0 * at - x, y],
+            Self::Y(at) => [x, 2.0 * at - y],
+        }
+    }
+}
+
+/// What the mechanism must do, SI.
+#[derive(Clone, Debug)]
+pub struct Requirements {
+    /// Half width of the force band, and the level if it is not free.
+    pub force: Option<(f64, Option<f64>)>,
+    /// Shortest usable stroke, m.
+    pub travel_m: Option<f64>,
+    /// What the stress is held against.
+    pub stress: Option<StressLimit>,
+    /// Least slope, N/m.
+    pub stiffness_min: f64,
+    /// Largest slope, N/m.
+    pub stiffness_max: Option<f64>,
+    /// Limits on metrics: index into [`METRICS`], smallest, largest, unit typed.
+    pub limits: Vec<(usize, Option<f64>, Option<f64>, Unit)>,
+}
+
+/// What the stress is held against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StressLimit {
+    /// Yield stress over this factor.
+    SafetyFactor(f64),
+    /// A stress, Pa.
+    Stress(f64),
+}
+
+impl Design {
+    /// The largest stress allowed, Pa, if one is asked for and the yield stress is known where it is needed.
+    pub fn allowable_pa(&self) -> Option<f64> {
+        match self.requirements.as_ref()?.stress? {
+            StressLimit::Stress(stress_pa) => Some(stress_pa),
+            StressLimit::SafetyFactor(factor) => Some(self.yield_pa? / factor),
+        }
+    }
+}
+
+/// Units in which people are shown results: those that they typed.
+#[derive(Clone, Debug)]
+pub struct DisplayUnits {
+    /// Displacements.
+    pub displacement: Unit,
+    /// Lengths of the drawing.
+    pub length: Unit,
+    /// Forces.
+    pub force: Unit,
+    /// Stresses.
+    pub stress: Unit,
+    /// Slopes of the force.
+    pub stiffness: Unit,
+}
+
+fn unit_or(slot: Option<&Quantity>, symbol: &str, dimension: Dimension) -> Unit {
+    slot.map(|q| q.unit.clone()).or_else(|| Unit::parse(symbol).ok()).unwrap_or_else(|| Unit::si(dimension))
+}
+
+fn quantity(slot: &Slot<Quantity>) -> Option<&Quantity> {
+    slot.as_ref().map(|l| &l.value)
+}
+
+fn si(slot: &Slot<Quantity>) -> Option<f64> {
+    quantity(slot).map(|q| q.si)
+}
+
+/// Reads a design from what was typed. Everything wrong goes into `diagnostics`.
+pub fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
+    let material_origin = fill_material(&mut spec.material.body, diagnostics);
+    let place = spec.design.present.as_ref().map(|p| p.span).unwrap_or_default();
+    if spec.model.joints.as_ref().is_some_and(|j| j.value == "overlap") {
+        let span = spec.model.joints.as_ref().map(|j| j.span).unwrap_or_default();
+        diagnostics.push(
+            Diagnostic::error("E0306", span, "`overlap` is part of the language but not of this version")
+                .label("not available yet")
+                .help("use \"point\"; the report says what rigid zones at the joints would add"),
+        );
+    }
+    let requirements = requirements_of(spec, diagnostics);
+    // Members in the order of their names: the result does not depend on the order of the file.
+    spec.design.nodes.sort_by(|a, b| a.name.value.cmp(&b.name.value));
+    spec.design.beams.sort_by(|a, b| a.name.value.cmp(&b.name.value));
+    let mut builder = Builder { spec, diagnostics, place };
+    let (network, direction) = builder.network()?;
+    let mirror = builder.mirror(direction);
+    if diagnostics.has_errors() {
+        return None;
+    }
+    check_network(&network, spec, place, diagnostics);
+    if diagnostics.has_errors() {
+        return None;
+    }
+    let units = display_units(spec);
+    Some(Design {
+        title: spec.header.title.as_ref().map_or_else(|| "Compliant mechanism".to_owned(), |t| t.value.clone()),
+        load_node: network.drive.node(),
+        network,
+        node_names: spec.design.nodes.iter().map(|n| n.name.value.clone()).collect(),
+        beam_names: spec.design.beams.iter().map(|b| b.name.value.clone()).collect(),
+        mirror,
+        direction,
+        travel_m: si(&spec.load.travel)?,
+        yield_pa: si(&spec.material.yield_stress),
+        density_kg_per_m3: si(&spec.material.density),
+        theory: theory_of(spec),
+        // `[model]` may be absent as a whole: then the defaults of its description hold.
+        accuracy: si(&spec.model.accuracy).unwrap_or(1e-8),
+        requirements,
+        units,
+        material_origin,
+    })
+}
+
+fn theory_of(spec: &Spec) -> Theory {
+    match spec.model.beam.as_ref().map(|b| b.value) {
+        Some("inextensible") => Theory::Inextensible,
+        _ => Theory::Reissner,
+    }
+}
+
+fn display_units(spec: &Spec) -> DisplayUnits {
+    let displacement = unit_or(quantity(&spec.load.travel), "mm", Dimension::Length);
+    let force = unit_or(quantity(&spec.requirements.force.nominal), "N", Dimension::Force);
+    let typed = spec.requirements.stiffness.min.as_ref().filter(|s| s.origin == Origin::File).map(|s| &s.value);
+    let slope = format!("{}/{}", force.symbol(), displacement.symbol());
+    let first_node = spec.design.nodes.iter().find_map(|n| n.value.at.as_ref()).map(|at| &at.value[0]);
+    let stress = spec.requirements.stress.max.as_ref().or(spec.material.yield_stress.as_ref().filter(|y| y.origin == Origin::File));
+    DisplayUnits {
+        stiffness: unit_or(typed, &slope, Dimension::Stiffness),
+        length: unit_or(first_node, "mm", Dimension::Length),
+        stress: unit_or(stress.map(|s| &s.value), "MPa", Dimension::Stress),
+        displacement,
+        force,
+    }
+}
+
+/// Fills what the catalogue knows, and says in words where the data come from.
+fn fill_material(material: &mut spec::Material, diagnostics: &mut Diagnostics) -> String {
+    let mut origin = "project file".to_owned();
+    if let Some(entry) = &material.catalogue {
+        let span = entry.span;
+        let Some(found) = materials::find(&entry.value) else {
+            let near = closest(&entry.value, materials::catalogue().iter().flat_map(|m| std::iter::once(m.name.as_str()).chain(m.aliases.iter().map(String::as_str))));
+            let all = materials::names().collect::<Vec<_>>().join(", ");
+            diagnostics.push(
+                Diagnostic::error("E0308", span, "no such material in the catalogue")
+                    .label("not known")
+                    .help(near.map_or_else(|| format!("the catalogue has {all}"), |n| format!("did you mean \"{n}\"? The catalogue has {all}"))),
+            );
+            // What is missing for want of the entry need not be reported as well.
+            return origin;
+        };
+        let mut fill = |slot: &mut Slot<Quantity>, property: Option<&Property>, symbol: &str| {
+            if let (None, Some(property)) = (&slot, property)
+                && let Ok(unit) = Unit::parse(symbol)
+            {
+                let value = Quantity { si: property.value, unit, tolerance: None };
+                *slot = Some(Located { value, span, origin: Origin::Catalogue(format!("{}, {} ({})", found.name, property.kind, property.source)) });
+            }
+        };
+        fill(&mut material.young_modulus, found.young_modulus_pa.as_ref(), "GPa");
+        fill(&mut material.poisson_ratio, found.poisson_ratio.as_ref(), "");
+        fill(&mut material.yield_stress, found.yield_stress_pa.as_ref(), "MPa");
+        fill(&mut material.density, found.density_kg_per_m3.as_ref(), "kg/m^3");
+        origin = format!("catalogue entry {}, overridden by the project file where it gives values", found.name);
+    }
+    origin
+}
+
+fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Requirements> {
+    let requirements = &spec.requirements;
+    requirements.present.as_ref()?;
+    let stress = match (&requirements.stress.safety_factor, &requirements.stress.max) {
+        (Some(factor), Some(max)) => {
+            diagnostics.push(
+                Diagnostic::error("E0305", max.span, "`safety_factor` and `max` exclude each other").label("the second of two").related(factor.span, "the first").help("keep one"),
+            );
+            None
+        }
+        (Some(factor), None) => Some(StressLimit::SafetyFactor(factor.value.si)),
+        (None, Some(max)) => Some(StressLimit::Stress(max.value.si)),
+        (None, None) => None,
+    };
+    if let Some(section) = requirements.stress.present.as_ref().filter(|_| stress.is_none() && requirements.stress.max.is_none()) {
+        diagnostics.push(
+            Diagnostic::error("E0302", section.span, "`stress` says nothing").label("from this table").help("give `safety_factor = 1.5` or `max = \"50 MPa\"`"),
+        );
+    }
+    let mut limits = Vec::new();
+    for (index, bounds) in requirements.limits.bounds.iter().enumerate() {
+        if let Some(section) = &bounds.present {
+            let (min, max) = (quantity(&bounds.min), quantity(&bounds.max));
+            let Some(unit) = min.or(max).map(|q| q.unit.clone()) else {
+                diagnostics.push(Diagnostic::error("E0302", section.span, "this limit says nothing").label("from this table").help("give `min` or `max`"));
+                continue;
+            };
+            limits.push((index, min.map(|q| q.si), max.map(|q| q.si), unit));
+        }
+    }
+    debug_assert_eq!(requirements.limits.bounds.len(), METRICS.len());
+    Some(Requirements {
+        force: si(&requirements.force.band).map(|band| (band, si(&requirements.force.nominal))),
+        travel_m: si(&requirements.travel),
+        stress,
+        stiffness_min: si(&requirements.stiffness.min).unwrap_or(0.0),
+        stiffness_max: si(&requirements.stiffness.max),
+        limits,
+    })
+}
+
+struct Builder<'a> {
+    spec: &'a Spec,
+    diagnostics: &'a mut Diagnostics,
+    place: Span,
+}
+
+/// A beam whose references are known but whose end nodes may not have positions yet.
+struct Drawn<'a> {
+    member: &'a Member<spec::Beam>,
+    start: usize,
+    end: usize,
+    form: ShapeForm,
+}
+
+enum ShapeForm {
+    /// Coefficients c1…cm; c0 and the length follow from the nodes.
+    Bend(Vec<f64>),
+    /// The whole shape; the nodes follow from it.
+    Whole(Shape),
+}
+
+impl Builder<'_> {
+    fn error(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// The index of the node that a name refers to.
+    fn node(&mut self, name: &str, span: Span) -> Option<usize> {
+        let nodes = &self.spec.design.nodes;
+        let found = nodes.iter().position(|n| n.name.value == name);
+        if found.is_none() {
+            let names = || nodes.iter().map(|n| n.name.value.as_str());
+            let help = closest(name, names()).map_or_else(|| format!("the design has {}", names().collect::<Vec<_>>().join(", ")), |near| format!("did you mean `{near}`?"));
+            self.error(Diagnostic::error("E0304", span, format!("there is no node `{name}`")).label("not defined in `design.nodes`").help(help));
+        }
+        found
+    }
+
+    /// The network with its drive and the direction of the drive; `None` after errors.
+    fn network(&mut self) -> Option<(Network, [f64; 2])> {
+        let spec = self.spec;
+        let drawn: Vec<Option<Drawn<'_>>> = spec.design.beams.iter().map(|b| self.drawn(b)).collect();
+        let supports: Vec<Option<Support>> = spec.design.nodes.iter().map(|n| self.support(n)).collect();
+        let load_node = spec.load.node.as_ref().and_then(|n| self.node(&n.value, n.span));
+        let section = self.section();
+        let direction = spec.load.direction.as_ref().map(|d| unit(d.value))?;
+        let drawn: Vec<Drawn<'_>> = drawn.into_iter().collect::<Option<_>>()?;
+        let positions = self.positions(&drawn)?;
+        let beams: Vec<Option<Beam>> = drawn.iter().map(|d| self.beam(d, &positions, section)).collect();
+        let beams = beams.into_iter().collect::<Option<Vec<_>>>()?;
+        let nodes = positions.iter().zip(supports).map(|(at, support)| Some(Node { position_m: *at, support: support? })).collect::<Option<Vec<_>>>()?;
+        Some((Network { nodes, beams, drive: Drive::Displacement { node: load_node?, direction } }, direction))
+    }
+
+    fn drawn<'b>(&mut self, member: &'b Member<spec::Beam>) -> Option<Drawn<'b>> {
+        let beam = &member.value;
+        let form = self.form(member);
+        let ends = beam.between.as_ref()?;
+        let [start, end] = &ends.value[..] else { return None };
+        let (from, to) = (self.node(&start.value, start.span), self.node(&end.value, end.span));
+        let (start, end) = (from?, to?);
+        if start == end {
+            self.error(
+                Diagnostic::error("E0502", ends.span, format!("beam `{}` starts and ends at the same node", member.name.value)).label("the same twice").help("name two different nodes"),
+            );
+            return None;
+        }
+        for hinge in beam.hinged.iter().flat_map(|h| &h.value) {
+            let node = self.node(&hinge.value, hinge.span)?;
+            if node != start && node != end {
+                self.error(Diagnostic::error("E0304", hinge.span, format!("beam `{}` does not end at `{}`", member.name.value, hinge.value)).help("name one of its two nodes"));
+            }
+        }
+        Some(Drawn { member, start, end, form: form? })
+    }
+
+    fn form(&mut self, member: &Member<spec::Beam>) -> Option<ShapeForm> {
+        let beam = &member.value;
+        let given: Vec<(Span, &str)> = [
+            beam.bend.as_ref().map(|l| (l.span, "bend")),
+            beam.straight.as_ref().filter(|s| s.value).map(|l| (l.span, "straight")),
+            beam.arc.as_ref().map(|l| (l.span, "arc")),
+            beam.angle.as_ref().map(|l| (l.span, "angle")),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        let name = &member.name;
+        match given[..] {
+            [] => {
+                self.error(
+                    Diagnostic::error("E0302", name.span, format!("beam `{}` has no shape", name.value))
+                        .label("this beam")
+                        .help("give `bend = [c1, …]`, `straight = true`, `arc = \"30 deg\"`, or `angle = [c0, …]` with `length`"),
+                );
+                None
+            }
+            [_] => {
+                if let Some(bend) = &beam.bend {
+                    return Some(ShapeForm::Bend(bend.value.clone()));
+                }
+                if let Some(arc) = &beam.arc {
+                    return Some(ShapeForm::Bend(vec![arc.value.si]));
+                }
+                let Some(angle) = &beam.angle else { return Some(ShapeForm::Bend(Vec::new())) };
+                let Some(length) = &beam.length else {
+                    self.error(Diagnostic::error("E0302", angle.span, "`angle` needs `length`").label("angle without length").help("add the arc length, such as `length = \"34 mm\"`"));
+                    return None;
+                };
+                Shape::new(angle.value.clone(), length.value.si)
+                    .map_err(|e| self.error(Diagnostic::error("E0503", angle.span, e.to_string()).label("impossible shape").help("change the coefficients")))
+                    .ok()
+                    .map(ShapeForm::Whole)
+            }
+            [(first, one), (second, other), ..] => {
+                self.error(
+                    Diagnostic::error("E0305", second, format!("`{one}` and `{other}` exclude each other")).label("the second shape").related(first, "the first").help("keep one"),
+                );
+                None
+            }
+        }
+    }
+
+    fn support(&mut self, member: &Member<spec::Node>) -> Option<Support> {
+        let node = &member.value;
+        let stray = |what: &str, span: Span| Diagnostic::error("E0504", span, format!("`{what}` is for sliders")).help("add `support = \"slider\"`, or remove it");
+        let kind = node.support.as_ref().map(|s| s.value);
+        if kind != Some("slider") {
+            if let Some(direction) = &node.direction {
+                self.error(stray("direction", direction.span));
+            }
+            if let Some(rotation) = &node.rotation {
+                self.error(stray("rotation", rotation.span));
+            }
+        }
+        match kind {
+            Some("clamped") => Some(Support::Clamped),
+            Some("pinned") => Some(Support::Pinned),
+            Some(_) => {
+                let Some(direction) = &node.direction else {
+                    let span = node.support.as_ref().map_or(member.name.span, |s| s.span);
+                    self.error(Diagnostic::error("E0504", span, "a slider needs a `direction`").label("in which direction?").help("add, for example, `direction = [0, 1]`"));
+                    return None;
+                };
+                let rotation = if node.rotation.as_ref().is_some_and(|r| r.value == "free") { Rotation::Free } else { Rotation::Fixed };
+                Some(Support::Slider { direction: unit(direction.value), rotation })
+            }
+            None => Some(Support::Free),
+        }
+    }
+
+    /// E, ν and depth; thickness is the beam's.
+    fn section(&mut self) -> Option<Section> {
+        let material = &self.spec.material;
+        let place = material.present.as_ref().map_or(self.place, |p| p.span);
+        if material.young_modulus.is_none() && material.catalogue.as_ref().is_none_or(|c| materials::find(&c.value).is_some()) && material.present.is_some() {
+            self.error(
+                Diagnostic::error("E0302", place, "`young_modulus` is missing").label("from this table").help("give `use = \"POM-C\"` or another entry of the catalogue, or `young_modulus = \"2 GPa\"`"),
+            );
+        }
+        let poisson = si(&material.poisson_ratio);
+        if poisson.is_none() && theory_of(self.spec) == Theory::Reissner && material.young_modulus.is_some() {
+            self.error(
+                Diagnostic::error("E0302", place, "`poisson_ratio` is missing")
+                    .label("from this table")
+                    .help("the Reissner model needs it for the shear stiffness; give it, or `use` a catalogue entry, or choose `model.beam = \"inextensible\"`"),
+            );
+        }
+        Some(Section { young_pa: si(&material.young_modulus)?, thickness_m: si(&self.spec.design.thickness).unwrap_or(f64::NAN), depth_m: si(&self.spec.design.depth)?, poisson })
+    }
+
+    /// Positions of all nodes: as typed, or following from beams given as a whole.
+    fn positions(&mut self, drawn: &[Drawn<'_>]) -> Option<Vec<[f64; 2]>> {
+        let nodes = &self.spec.design.nodes;
+        let mut at: Vec<Option<[f64; 2]>> = nodes.iter().map(|n| n.value.at.as_ref().map(|at| [at.value[0].si, at.value[1].si])).collect();
+        // Each round places at least one node, or nothing more follows.
+        for _ in 0..nodes.len() {
+            for beam in drawn {
+                let ShapeForm::Whole(shape) = &beam.form else { continue };
+                let [x, y] = shape.chord_m();
+                match (at[beam.start], at[beam.end]) {
+                    (Some(from), None) => at[beam.end] = Some([from[0] + x, from[1] + y]),
+                    (None, Some(to)) => at[beam.start] = Some([to[0] - x, to[1] - y]),
+                    _ => {}
+                }
+            }
+        }
+        for (node, _) in nodes.iter().zip(&at).filter(|(_, at)| at.is_none()) {
+            // A point that could not be read has been reported already.
+            if !self.diagnostics.has_errors() {
+                self.error(
+                    Diagnostic::error("E0501", node.name.span, format!("the position of node `{}` is unknown", node.name.value))
+                        .label("where?")
+                        .help("give `at = [\"x\", \"y\"]`, or join it by a beam with `angle` and `length` to a node that has one"),
+                );
+            }
+        }
+        at.into_iter().collect()
+    }
+
+    fn beam(&mut self, drawn: &Drawn<'_>, at: &[[f64; 2]], section: Option<Section>) -> Option<Beam> {
+        let (member, beam) = (drawn.member, &drawn.member.value);
+        let name = &member.name.value;
+        let (from, to) = (at[drawn.start], at[drawn.end]);
+        let chord = [to[0] - from[0], to[1] - from[1]];
+        let shape = match &drawn.form {
+            ShapeForm::Whole(shape) => shape.clone(),
+            ShapeForm::Bend(bend) => match Shape::from_chord(chord, bend) {
+                Ok(shape) => shape,
+                Err(error) => {
+                    let span = beam.bend.as_ref().map_or(member.name.span, |b| b.span);
+                    self.error(Diagnostic::error("E0503", span, format!("beam `{name}`: {error}")).label("this shape").help("move its nodes apart, or change its bend"));
+                    return None;
+                }
+            },
+        };
+        let thickness_m = si(&beam.thickness).or(si(&self.spec.design.thickness));
+        if thickness_m.is_none() && !self.diagnostics.has_errors() {
+            self.error(
+                Diagnostic::error("E0302", member.name.span, format!("beam `{name}` has no thickness"))
+                    .label("this beam")
+                    .help("give `design.thickness = \"1 mm\"` for all beams, or `thickness` for this one"),
+            );
+        }
+        let hinged = |node: usize| beam.hinged.iter().flat_map(|h| &h.value).any(|h| self.spec.design.nodes.get(node).is_some_and(|n| n.name.value == h.value));
+        let joint = |node: usize| if hinged(node) { Joint::Hinged } else { Joint::Rigid };
+        let (start_joint, end_joint) = (joint(drawn.start), joint(drawn.end));
+        let section = Section { thickness_m: thickness_m?, ..section? };
+        Some(Beam { start: drawn.start, end: drawn.end, shape, section, start_joint, end_joint })
+    }
+
+    /// `x = 0` or `y = 2 mm`; the load must move along the line.
+    fn mirror(&mut self, direction: [f64; 2]) -> Option<Mirror> {
+        let text = self.spec.layout.mirror.as_ref()?;
+        let parsed = text.value.split_once('=').and_then(|(axis, value)| {
+            let value = value.trim();
+            let at = if value == "0" { 0.0 } else { Quantity::parse(value, Dimension::Length).ok()?.si };
+            match axis.trim() {
+                "x" => Some(Mirror::X(at)),
+                "y" => Some(Mirror::Y(at)),
+                _ => None,
+            }
+        });
+        let Some(mirror) = parsed else {
+            self.error(Diagnostic::error("E0507", text.span, "this is not a mirror line").label("expected a line").help("write `mirror = \"x = 0\"` or `mirror = \"y = 2 mm\"`"));
+            return None;
+        };
+        let across = match mirror {
+            Mirror::X(_) => direction[0],
+            Mirror::Y(_) => direction[1],
+        };
+        if across.abs() > 1e-9 {
+            let load = self.spec.load.direction.as_ref().map_or(text.span, |d| d.span);
+            self.error(
+                Diagnostic::error("E0508", load, "the load does not move along the mirror line")
+                    .label("this direction")
+                    .related(text.span, "mirrored here")
+                    .help("both halves move alike only along the line; change the direction, or draw the whole mechanism without `layout.mirror`"),
+            );
+        }
+        Some(mirror)
+    }
+}
+
+/// Unit vector; the reader has made sure that it has a length.
+fn unit([x, y]: [f64; 2]) -> [f64; 2] {
+    let length = forcewright_base::maths::hypot(x, y);
+    [x / length, y / length]
+}
+
+/// What the engine finds wrong with the network, at the place of its cause.
+fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut Diagnostics) {
+    let Err(error) = network.check() else { return };
+    let beam_span = |beam: usize| spec.design.beams.get(beam).map_or(place, |b| b.name.span);
+    let node_span = |node: usize| spec.design.nodes.get(node).map_or(place, |n| n.name.span);
+    let node_name = |node: usize| spec.design.nodes.get(node).map_or("?", |n| n.name.value.as_str());
+    let beam_name = |beam: usize| spec.design.beams.get(beam).map_or("?", |b| b.name.value.as_str());
+    let diagnostic = match error {
+        NetworkError::DoesNotClose { beam, gap_m } => {
+            Diagnostic::error("E0502", beam_span(beam), format!("the shape of beam `{}` misses its node by {:.3e} m", beam_name(beam), gap_m))
+                .help("leave out `at` of one of its nodes, so that it follows from the shape, or give `bend` instead of `angle` and `length`")
+        }
+        NetworkError::LooseNode { node } => Diagnostic::error("E0510", node_span(node), format!("no beam ends at node `{}`", node_name(node))).help("remove it, or join it"),
+        NetworkError::Mechanism { node } => Diagnostic::error("E0505", node_span(node), format!("the part of the network with node `{}` can move freely", node_name(node)))
+            .label("this part")
+            .help("clamp or pin a node of it, or join it to the rest"),
+        NetworkError::DriveBlocked { node } => {
+            let span = spec.load.node.as_ref().map_or(place, |n| n.span);
+            Diagnostic::error("E0506", span, format!("node `{}` cannot move in the direction of the load", node_name(node)))
+                .label("held by its support")
+                .help("choose a direction that its support allows, or another node")
+        }
+        other => {
+            let span = other_place(&other, &beam_span, &node_span).unwrap_or(place);
+            Diagnostic::error("E0509", span, other.to_string()).help("see the parameter table for the accepted range")
+        }
+    };
+    diagnostics.push(diagnostic);
+}
+
+fn other_place(error: &NetworkError, beam_span: &dyn Fn(usize) -> Span, node_span: &dyn Fn(usize) -> Span) -> Option<Span> {
+    match *error {
+        NetworkError::Section { beam, .. } | NetworkError::Shape { beam, .. } | NetworkError::BeamOnOneNode { beam } => Some(beam_span(beam)),
+        NetworkError::Position { node } | NetworkError::Direction { node } => Some(node_span(node)),
+        _ => None,
+    }
+}

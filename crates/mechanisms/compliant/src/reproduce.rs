@@ -1,0 +1,1 @@
+pub static ALL: &[forcewright_contract::family::Reproduction] = &[];

@@ -1,0 +1,216 @@
+//! The mechanism as a picture: as made, and at the end of its travel with its stress in colour.
+
+use forcewright_base::maths;
+use forcewright_base::units::format_si;
+use forcewright_beam::{Point, Rotation, Support};
+use forcewright_model::{ColourScale, Item, Role, Scene, SupportKind};
+
+use crate::analysis::{Behaviour, Measured};
+use crate::design::Design;
+
+/// Points drawn per beam.
+const SAMPLES: usize = 49;
+
+/// Draws a design, and its last state if there is one.
+pub fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Scene {
+    let last = behaviour.path.points.last();
+    let artist = Artist { design, size_m: size_m(design) };
+    let mut items = Vec::new();
+    artist.mirror_line(&mut items);
+    artist.beams(&mut items, None);
+    if let Some(point) = last {
+        artist.block(&mut items, point);
+        artist.beams(&mut items, Some(point));
+    }
+    artist.supports(&mut items);
+    artist.labels(&mut items);
+    if let Some(point) = last {
+        artist.load(&mut items, behaviour, point);
+        artist.peak(&mut items, measured, point);
+    }
+    let largest = last.and_then(Point::peak_stress).map_or(0.0, |(_, peak)| peak.stress_pa);
+    let limit = design.allowable_pa().map(|pa| (pa, "allowed".to_owned()));
+    let scale_end = limit.as_ref().map_or(largest, |(pa, _)| largest.max(*pa));
+    let reached = last.map_or_else(String::new, |p| format_si(p.displacement, &design.units.displacement, 4));
+    Scene {
+        items,
+        scale: Some(ColourScale { label: "largest |σ| over both faces".to_owned(), display: design.units.stress.clone(), max: scale_end, limit }),
+        display: design.units.length.clone(),
+        description: format!(
+            "The mechanism as made (outline) and at Δ = {reached} (coloured by stress): {} beams and {} nodes{}.",
+            design.network.beams.len(),
+            design.network.nodes.len(),
+            if design.mirror.is_some() { ", with its mirrored half" } else { "" }
+        ),
+    }
+}
+
+/// Largest extent of the drawn network, m.
+fn size_m(design: &Design) -> f64 {
+    let mut low = [f64::INFINITY; 2];
+    let mut high = [f64::NEG_INFINITY; 2];
+    for beam in &design.network.beams {
+        let start = design.network.nodes[beam.start].position_m;
+        for i in 0..=8 {
+            let p = beam.shape.point_m(f64::from(i) / 8.0);
+            for k in 0..2 {
+                low[k] = low[k].min(start[k] + p[k]);
+                high[k] = high[k].max(start[k] + p[k]);
+            }
+        }
+    }
+    (high[0] - low[0]).max(high[1] - low[1])
+}
+
+struct Artist<'a> {
+    design: &'a Design,
+    size_m: f64,
+}
+
+impl Artist<'_> {
+    fn beams(&self, items: &mut Vec<Item>, state: Option<&Point>) {
+        for (index, beam) in self.design.network.beams.iter().enumerate() {
+            let start = self.design.network.nodes[beam.start].position_m;
+            let place = |i: usize| i as f64 / (SAMPLES - 1) as f64;
+            let state = state.map(|s| &s.beams[index]);
+            let points: Vec<[f64; 2]> = (0..SAMPLES)
+                .map(|i| match state {
+                    Some(state) => state.shape_m(place(i)),
+                    None => {
+                        let p = beam.shape.point_m(place(i));
+                        [start[0] + p[0], start[1] + p[1]]
+                    }
+                })
+                .collect();
+            let values = state.map(|state| {
+                (0..SAMPLES)
+                    .map(|i| {
+                        let [left, right] = state.stress_pa(place(i));
+                        left.abs().max(right.abs())
+                    })
+                    .collect::<Vec<_>>()
+            });
+            let width_m = beam.section.thickness_m;
+            let (role, copy) = if state.is_some() { (Role::Deformed, Role::DeformedCopy) } else { (Role::Undeformed, Role::UndeformedCopy) };
+            if let Some(mirror) = self.design.mirror {
+                let points = points.iter().map(|p| mirror.image(*p)).collect();
+                items.push(Item::Line { points, width_m, role: copy, values: values.clone() });
+            }
+            items.push(Item::Line { points, width_m, role, values });
+        }
+    }
+
+    /// Unit vector from the mechanism into the ground at a node: against the beams that leave it.
+    fn outward(&self, node: usize) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for beam in &self.design.network.beams {
+            if beam.start == node {
+                let (sin, cos) = maths::sin_cos(beam.shape.angle_at(0.0));
+                sum = [sum[0] - cos, sum[1] - sin];
+            }
+            if beam.end == node {
+                let (sin, cos) = maths::sin_cos(beam.shape.angle_at(1.0));
+                sum = [sum[0] + cos, sum[1] + sin];
+            }
+        }
+        let length = maths::hypot(sum[0], sum[1]);
+        if length > 1e-9 { [sum[0] / length, sum[1] / length] } else { [0.0, -1.0] }
+    }
+
+    fn has_block(&self) -> bool {
+        let guided = matches!(self.design.network.nodes[self.design.load_node].support, Support::Slider { rotation: Rotation::Fixed, .. });
+        guided && self.design.mirror.is_some()
+    }
+
+    fn supports(&self, items: &mut Vec<Item>) {
+        for (index, node) in self.design.network.nodes.iter().enumerate() {
+            if self.has_block() && index == self.design.load_node {
+                continue;
+            }
+            let kind = match node.support {
+                Support::Free => continue,
+                Support::Clamped => SupportKind::Clamped,
+                Support::Pinned => SupportKind::Pinned,
+                Support::Slider { direction, rotation } => SupportKind::Slider { direction, rotates: rotation == Rotation::Free },
+            };
+            let outward = self.outward(index);
+            items.push(Item::Support { at: node.position_m, kind, outward });
+            if let Some(mirror) = self.design.mirror {
+                let image = |v: [f64; 2]| {
+                    let (zero, tip) = (mirror.image([0.0, 0.0]), mirror.image(v));
+                    [tip[0] - zero[0], tip[1] - zero[1]]
+                };
+                let kind = match kind {
+                    SupportKind::Slider { direction, rotates } => SupportKind::Slider { direction: image(direction), rotates },
+                    other => other,
+                };
+                items.push(Item::Support { at: mirror.image(node.position_m), kind, outward: image(outward) });
+            }
+        }
+    }
+
+    fn mirror_line(&self, items: &mut Vec<Item>) {
+        let Some(mirror) = self.design.mirror else { return };
+        // Along the load, from well below to well above the mechanism.
+        let centre = self.design.network.nodes[self.design.load_node].position_m;
+        let image = mirror.image(centre);
+        let middle = [f64::midpoint(centre[0], image[0]), f64::midpoint(centre[1], image[1])];
+        let d = self.design.direction;
+        let (back, ahead) = (0.22 * self.size_m, 1.12 * self.size_m);
+        let at = |t: f64| [middle[0] + t * d[0], middle[1] + t * d[1]];
+        items.push(Item::Line { points: vec![at(-back), at(ahead)], width_m: 0.0, role: Role::Construction, values: None });
+    }
+
+    /// The rigid block that joins the two halves at the moved node.
+    fn block(&self, items: &mut Vec<Item>, point: &Point) {
+        if !self.has_block() {
+            return;
+        }
+        let Some(mirror) = self.design.mirror else { return };
+        let node = self.design.load_node;
+        let at = self.design.network.nodes[node].position_m;
+        let d = self.design.direction;
+        let height = 0.06 * self.size_m;
+        let rest = |shift: [f64; 2]| {
+            let a = [at[0] + shift[0], at[1] + shift[1]];
+            let b = mirror.image(a);
+            let back = |p: [f64; 2]| [p[0] - height * d[0], p[1] - height * d[1]];
+            vec![a, b, back(b), back(a)]
+        };
+        items.push(Item::Body { corners: rest([0.0, 0.0]), role: Role::Undeformed });
+        items.push(Item::Body { corners: rest(point.nodes[node].displacement_m), role: Role::Deformed });
+    }
+
+    fn labels(&self, items: &mut Vec<Item>) {
+        for (node, name) in self.design.network.nodes.iter().zip(&self.design.node_names) {
+            items.push(Item::Label { at: node.position_m, text: name.clone() });
+        }
+    }
+
+    fn load(&self, items: &mut Vec<Item>, behaviour: &Behaviour, point: &Point) {
+        let node = self.design.load_node;
+        let at = self.design.network.nodes[node].position_m;
+        let centre = match self.design.mirror {
+            Some(mirror) if self.has_block() => {
+                let image = mirror.image(at);
+                [f64::midpoint(at[0], image[0]), f64::midpoint(at[1], image[1])]
+            }
+            _ => at,
+        };
+        let moved = point.nodes[node].displacement_m;
+        let d = self.design.direction;
+        let gap = if self.has_block() { 0.07 } else { 0.02 } * self.size_m;
+        let head = [centre[0] + moved[0] - gap * d[0], centre[1] + moved[1] - gap * d[1]];
+        let tail = [head[0] - 0.22 * self.size_m * d[0], head[1] - 0.22 * self.size_m * d[1]];
+        let units = &self.design.units;
+        let label = format!("F = {} at Δ = {}", format_si(behaviour.copies * point.force, &units.force, 4), format_si(point.displacement, &units.displacement, 4));
+        items.push(Item::Arrow { from: tail, to: head, label });
+    }
+
+    fn peak(&self, items: &mut Vec<Item>, measured: &Measured, point: &Point) {
+        // Marked only where the picture shows the state in which it occurs.
+        let Some(largest) = measured.stress.filter(|s| s.at_m >= point.displacement * (1.0 - 1e-9)) else { return };
+        let at = point.beams[largest.beam].shape_m(largest.peak.u);
+        items.push(Item::Marker { at, label: format!("σ max {}", format_si(largest.peak.stress_pa, &self.design.units.stress, 3)) });
+    }
+}

@@ -1,0 +1,363 @@
+//! The report page: one HTML file without scripts and without requests, for screens, paper and archives.
+//!
+//! Elements are closed as XML asks, so that the page can be read by XML tools too.
+
+use std::fmt::Write as _;
+
+use forcewright_base::units::{Unit, format_number, format_si};
+use forcewright_model::{Check, CheckState, Figure, FigureContent, Metric, Plot, Report, Sense, Series, Statement, StatusKind};
+
+use crate::escape::{each, escape};
+use crate::svg;
+use crate::table::{Column, Table};
+
+/// The page's style; colours come from [`svg::declarations`].
+const STYLE: &str = include_str!("report.css");
+/// Significant digits of numbers for people.
+const DIGITS: usize = 4;
+/// Rows of a figure's data table.
+const DATA_ROWS: usize = 25;
+/// Nothing may be loaded; styles and pictures stand in the page.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
+
+/// The report as one self-contained HTML page.
+pub fn page(report: &Report) -> String {
+    let sections: String = [
+        requirements(report),
+        own_checks(report),
+        warnings(report),
+        figures(report),
+        metrics(report),
+        parameters(report),
+        statements("model", "Model and assumptions", &report.model),
+        statements("limits", "Limits of validity", &report.limits),
+        sources(report),
+        work(report),
+        provenance(report),
+    ]
+    .concat();
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n{}</head>\n<body>\n{}<main>\n{sections}</main>\n</body>\n</html>\n",
+        head(report),
+        header(report)
+    )
+}
+
+fn head(report: &Report) -> String {
+    let (light, dark) = (svg::declarations(false), svg::declarations(true));
+    // No icon either: browsers would ask the server for one.
+    format!(
+        "<meta charset=\"utf-8\" />\n<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\" />\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<meta name=\"color-scheme\" content=\"light dark\" />\n\
+         <meta name=\"generator\" content=\"Forcewright {}\" />\n<title>{}</title>\n<link rel=\"icon\" href=\"data:,\" />\n<style>\n\
+         :root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{STYLE}</style>\n",
+        escape(&report.version),
+        escape(&title(report))
+    )
+}
+
+fn title(report: &Report) -> String {
+    match report.outcome.title.trim() {
+        "" => report.family.clone(),
+        title => title.to_owned(),
+    }
+}
+
+fn header(report: &Report) -> String {
+    let mut facts = vec![("Mechanism", escape(&report.family))];
+    if let Some(variant) = &report.variant {
+        facts.push(("Variant", escape(variant)));
+    }
+    facts.push(("Project file", format!("<code>{}</code>", escape(&report.input_name))));
+    facts.push(("Forcewright", escape(&report.version)));
+    let facts = each(facts, |(name, value)| format!("<div><dt>{name}</dt><dd>{value}</dd></div>"));
+    format!(
+        "<header>\n<p class=\"kind\">Design report</p>\n<h1>{}</h1>\n<dl class=\"facts\">{facts}</dl>\n{}{}</header>\n",
+        escape(&title(report)),
+        verdict(report),
+        status(report)
+    )
+}
+
+/// How many checks of a kind ended in a way.
+fn count(report: &Report, required: bool, state: CheckState) -> usize {
+    report.outcome.checks.iter().filter(|c| c.required == required && c.state == state).count()
+}
+
+fn verdict(report: &Report) -> String {
+    let all = report.outcome.checks.iter().filter(|c| c.required).count();
+    let (missed, open) = (count(report, true, CheckState::Missed), count(report, true, CheckState::NotAssessed));
+    let (class, mark, text) = match (all, missed, open) {
+        (0, ..) => ("open", "–", "No requirements to meet".to_owned()),
+        (_, 0, 0) if report.outcome.requirements_met() => {
+            ("met", "✓", if all == 1 { "The requirement is met".to_owned() } else { format!("All {all} requirements met") })
+        }
+        (_, 0, _) => ("open", "?", format!("{open} of {all} requirements not assessed, {} met", all - open)),
+        (_, _, 0) => ("missed", "✗", format!("{missed} of {all} requirements missed")),
+        _ => ("missed", "✗", format!("{missed} of {all} requirements missed, {open} not assessed")),
+    };
+    format!("<p class=\"verdict {class}\"><span class=\"mark\" aria-hidden=\"true\">{mark}</span> <strong>{text}</strong></p>\n")
+}
+
+fn status(report: &Report) -> String {
+    let status = &report.outcome.status;
+    if status.kind == StatusKind::Complete {
+        return String::new();
+    }
+    let advice = status.advice.as_ref().map_or_else(String::new, |a| format!("<br /><span class=\"advice\">→ {}</span>", escape(a)));
+    format!(
+        "<p class=\"verdict open\" id=\"status\"><span class=\"mark\" aria-hidden=\"true\">!</span> <span><strong>Analysis: {}.</strong> {}{advice}</span></p>\n",
+        status.kind.word(),
+        escape(&status.message)
+    )
+}
+
+/// A section with its heading; nothing if there is nothing in it.
+fn section(id: &str, title: &str, content: &str) -> String {
+    if content.is_empty() {
+        return String::new();
+    }
+    format!("<section id=\"{id}\" aria-labelledby=\"{id}-title\">\n<h2 id=\"{id}-title\">{title}</h2>\n{content}</section>\n")
+}
+
+fn state(state: CheckState) -> String {
+    let (class, mark) = match state {
+        CheckState::Met => ("met", "✓"),
+        CheckState::Missed => ("missed", "✗"),
+        CheckState::NotAssessed => ("open", "?"),
+    };
+    format!("<span class=\"state {class}\"><span aria-hidden=\"true\">{mark}</span> {}</span>", state.word())
+}
+
+/// A quantity for people, markup.
+fn value(si: f64, unit: &Unit) -> String {
+    let shown = unit.from_si(si);
+    if shown.is_finite() { escape(&format_si(si, unit, DIGITS)) } else { without_number(shown) }
+}
+
+/// What stands in place of a number that is none: a dash where it does not exist.
+fn without_number(si: f64) -> String {
+    if si.is_nan() {
+        "–"
+    } else if si > 0.0 {
+        "∞"
+    } else {
+        "-∞"
+    }
+    .to_owned()
+}
+
+fn optional(si: Option<f64>, unit: &Unit) -> String {
+    si.map_or_else(|| "–".to_owned(), |si| value(si, unit))
+}
+
+/// A relative margin as a signed percentage with one decimal.
+fn margin(margin: Option<f64>) -> String {
+    match margin {
+        Some(m) if m.is_finite() && m.abs() < 100.0 => format!("{:+.1} %", 100.0 * m),
+        Some(m) if m.is_finite() => format!("{}{} %", if m > 0.0 { "+" } else { "" }, format_number(100.0 * m, 3)),
+        _ => "–".to_owned(),
+    }
+}
+
+fn limit(check: &Check) -> String {
+    let sign = match check.sense {
+        Sense::AtMost => "≤",
+        Sense::AtLeast => "≥",
+    };
+    check.limit.map_or_else(|| "–".to_owned(), |l| format!("{sign} {}", value(l, &check.display)))
+}
+
+fn check_table(caption: &str, checks: &[&Check]) -> String {
+    if checks.is_empty() {
+        return String::new();
+    }
+    let columns = [
+        ("What", Column::Text),
+        ("State", Column::Text),
+        ("Found", Column::Number),
+        ("Limit", Column::Number),
+        ("Margin", Column::Number),
+        ("Code", Column::Code),
+    ];
+    let mut table = Table::new("checks", caption, &columns);
+    for check in checks {
+        let mut what = escape(&check.title);
+        if !check.basis.is_empty() {
+            let _ = write!(what, "<span class=\"note\">{}</span>", escape(&check.basis));
+        }
+        if let Some(advice) = &check.advice {
+            let _ = write!(what, "<span class=\"advice\">→ {}</span>", escape(advice));
+        }
+        table.row(&[
+            what,
+            state(check.state),
+            optional(check.value, &check.display),
+            limit(check),
+            margin(check.margin),
+            escape(check.code),
+        ]);
+    }
+    table.finish()
+}
+
+fn requirements(report: &Report) -> String {
+    let checks: Vec<&Check> = report.outcome.checks.iter().filter(|c| c.required).collect();
+    let table = check_table("What the project file asks for, what was found, and the distance to the limit", &checks);
+    let content = if table.is_empty() { "<p>The project file asks for nothing.</p>\n".to_owned() } else { table };
+    section("requirements", "Requirements", &content)
+}
+
+fn own_checks(report: &Report) -> String {
+    let checks: Vec<&Check> = report.outcome.checks.iter().filter(|c| !c.required).collect();
+    section("checks", "Further checks", &check_table("Rules of this kind of mechanism that apply without being asked for", &checks))
+}
+
+fn warnings(report: &Report) -> String {
+    let items = each(&report.outcome.warnings, |w| format!("<li><code>{}</code> {}</li>\n", escape(w.code), escape(&w.message)));
+    if items.is_empty() {
+        return String::new();
+    }
+    section("warnings", "Warnings", &format!("<ul class=\"warnings\">\n{items}</ul>\n"))
+}
+
+fn figures(report: &Report) -> String {
+    let all: String = report.figures.iter().enumerate().map(|(i, f)| figure(i + 1, f)).collect();
+    section("figures", "Figures", &all)
+}
+
+fn figure(number: usize, figure: &Figure) -> String {
+    let data = match &figure.content {
+        FigureContent::Plot(plot) => data_table(number, plot),
+        FigureContent::Scene(_) => String::new(),
+    };
+    format!(
+        "<figure id=\"figure-{}\">\n{}<figcaption><strong>Figure {number}. {}.</strong> {}</figcaption>\n{data}</figure>\n",
+        escape(figure.id),
+        svg::figure(figure),
+        escape(figure.title.trim_end_matches('.')),
+        escape(&figure.caption)
+    )
+}
+
+/// Some points of every line of a plot, behind a fold.
+fn data_table(number: usize, plot: &Plot) -> String {
+    let lines: Vec<&Series> = plot.series.iter().filter(|s| !s.x.is_empty() && !s.y.is_empty()).collect();
+    if lines.is_empty() {
+        return String::new();
+    }
+    let head = |label: &str, unit: &Unit| match unit.pretty() {
+        unit if unit.is_empty() => label.to_owned(),
+        unit => format!("{label} in {unit}"),
+    };
+    let (x, y) = (head(&plot.x.label, &plot.x.display), head(&plot.y.label, &plot.y.display));
+    let columns = [("Line", Column::Text), (x.as_str(), Column::Number), (y.as_str(), Column::Number)];
+    let mut table = Table::new("data", &format!("Points of figure {number}"), &columns);
+    let rows = (DATA_ROWS / lines.len()).max(2);
+    for line in lines.iter().take(DATA_ROWS / 2) {
+        let count = line.x.len().min(line.y.len());
+        let shown = rows.min(count);
+        for i in 0..shown {
+            let at = if shown > 1 { i * (count - 1) / (shown - 1) } else { 0 };
+            let cell = |values: &[f64], unit: &Unit| values.get(at).map_or_else(String::new, |v| number_in(*v, unit));
+            table.row(&[escape(&line.label), cell(&line.x, &plot.x.display), cell(&line.y, &plot.y.display)]);
+        }
+    }
+    format!("<details><summary>Values of figure {number}</summary>\n{}</details>\n", table.finish())
+}
+
+/// A number without its unit, for tables that name it above.
+fn number_in(si: f64, unit: &Unit) -> String {
+    let shown = unit.from_si(si);
+    if shown.is_finite() { format_number(shown, DIGITS) } else { without_number(shown) }
+}
+
+fn metric_table(caption: &str, metrics: &[&Metric]) -> String {
+    if metrics.is_empty() {
+        return String::new();
+    }
+    let columns = [("Meaning", Column::Text), ("Value", Column::Number), ("Name", Column::Code)];
+    let mut table = Table::new("metrics", caption, &columns);
+    for m in metrics {
+        table.row(&[escape(m.doc), value(m.value, &m.display), escape(m.name)]);
+    }
+    table.finish()
+}
+
+fn metrics(report: &Report) -> String {
+    let (key, other): (Vec<&Metric>, Vec<&Metric>) = report.outcome.metrics.iter().partition(|m| m.key);
+    let content = metric_table("Key results", &key) + &metric_table(if key.is_empty() { "All results" } else { "Further results" }, &other);
+    section("metrics", "Results", &content)
+}
+
+fn parameters(report: &Report) -> String {
+    if report.parameters.is_empty() {
+        return String::new();
+    }
+    let columns = [("Path", Column::Code), ("Value", Column::Number), ("Origin", Column::Text), ("Meaning", Column::Text)];
+    let mut table = Table::new("parameters", "The design as typed, with tolerances, and where each value comes from", &columns);
+    for p in &report.parameters {
+        table.row(&[breakable(&p.path), escape(&p.value), escape(&p.origin), escape(&p.doc)]);
+    }
+    section("parameters", "Parameters", &table.finish())
+}
+
+/// A dotted path that may break after its dots.
+fn breakable(path: &str) -> String {
+    escape(path).replace('.', ".<wbr />")
+}
+
+fn statements(id: &str, title: &str, statements: &[Statement]) -> String {
+    let items = each(statements, |s| format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(&s.title), escape(&s.text)));
+    if items.is_empty() {
+        return String::new();
+    }
+    section(id, title, &format!("<dl class=\"statements\">\n{items}</dl>\n"))
+}
+
+fn sources(report: &Report) -> String {
+    if report.outcome.sources.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(
+        "sources",
+        "Works whose equations or data were used; cite them with the result",
+        &[("Key", Column::Code), ("Work", Column::Text), ("Used for", Column::Text)],
+    );
+    for s in &report.outcome.sources {
+        table.row(&[escape(s.key), escape(s.text), escape(s.used_for)]);
+    }
+    section("sources", "Sources", &table.finish())
+}
+
+fn work(report: &Report) -> String {
+    let outcome = &report.outcome;
+    let mut content = format!("<p>Analysis: <strong>{}</strong>. {}</p>\n", outcome.status.kind.word(), escape(&outcome.status.message));
+    if let Some(error) = outcome.error_estimate {
+        let _ = writeln!(content, "<p>Estimated error of the forces: {} of the largest force.</p>", format_number(error, 2));
+    }
+    if !outcome.counters.is_empty() {
+        let mut table =
+            Table::new("counters", "Work done; the same on every machine", &[("Counter", Column::Code), ("Count", Column::Number)]);
+        for c in &outcome.counters {
+            table.row(&[escape(c.name), c.count.to_string()]);
+        }
+        content.push_str(&table.finish());
+    }
+    section("accuracy", "Accuracy and work", &content)
+}
+
+fn provenance(report: &Report) -> String {
+    let variant = report.variant.as_ref().map_or_else(String::new, |v| format!(", variant <code>{}</code>", escape(v)));
+    let content = format!(
+        "<dl class=\"statements\">\n<div><dt>Program</dt><dd>Forcewright {}</dd></div>\n\
+         <div><dt>Read</dt><dd><code>{}</code>{variant}</dd></div>\n\
+         <div><dt>SHA-256 of everything read</dt><dd><code class=\"hash\">{}</code></dd></div>\n</dl>\n\
+         <p>The same numbers again, on any machine:</p>\n<pre><code>{}</code></pre>\n",
+        escape(&report.version),
+        escape(&report.input_name),
+        escape(&report.input_sha256),
+        escape(&report.command)
+    );
+    section("provenance", "How to reproduce", &content)
+}

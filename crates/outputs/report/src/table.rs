@@ -1,0 +1,66 @@
+//! Tables of the report page.
+
+use std::fmt::Write as _;
+
+use crate::escape::escape;
+
+/// How a column is set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Column {
+    /// Words, to the left.
+    Text,
+    /// Numbers, to the right, with figures of equal width.
+    Number,
+    /// Names that scripts use.
+    Code,
+}
+
+impl Column {
+    fn class(self) -> &'static str {
+        match self {
+            Self::Text => "",
+            Self::Number => " class=\"number\"",
+            Self::Code => " class=\"code\"",
+        }
+    }
+}
+
+/// A table being written. Cells are markup: whoever adds them escapes them.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    columns: Vec<Column>,
+    head: String,
+    body: String,
+    class: &'static str,
+}
+
+impl Table {
+    /// A table with a caption and headed columns.
+    pub(crate) fn new(class: &'static str, caption: &str, columns: &[(&str, Column)]) -> Self {
+        let mut head = format!("<caption>{}</caption>\n<thead><tr>", escape(caption));
+        for (title, column) in columns {
+            let _ = write!(head, "<th scope=\"col\"{}>{}</th>", column.class(), escape(title));
+        }
+        head.push_str("</tr></thead>\n");
+        Self { columns: columns.iter().map(|c| c.1).collect(), head, body: String::new(), class }
+    }
+
+    /// Adds a row; its first cell heads it.
+    pub(crate) fn row(&mut self, cells: &[String]) {
+        self.body.push_str("<tr>");
+        for (i, (cell, column)) in cells.iter().zip(&self.columns).enumerate() {
+            let class = column.class();
+            if i == 0 {
+                let _ = write!(self.body, "<th scope=\"row\"{class}>{cell}</th>");
+            } else {
+                let _ = write!(self.body, "<td{class}>{cell}</td>");
+            }
+        }
+        self.body.push_str("</tr>\n");
+    }
+
+    /// The finished table, in a box that scrolls sideways on narrow screens.
+    pub(crate) fn finish(self) -> String {
+        format!("<div class=\"scroll\"><table class=\"{}\">\n{}<tbody>\n{}</tbody>\n</table></div>\n", self.class, self.head, self.body)
+    }
+}

@@ -1,0 +1,298 @@
+//! The outputs of a whole report: well formed, complete, escaped, without requests, the same every time.
+
+#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+
+#[allow(unreachable_pub, reason = "shared with the example")]
+mod fixture;
+
+use forcewright_base::units::Dimension;
+use forcewright_model::{CheckState, FigureContent, StatusKind, Stroke};
+use forcewright_report::svg::{self, Drawing, PlotSize, Rect, SceneSize};
+use forcewright_report::{csv, html, json};
+use roxmltree::{Document, ParsingOptions};
+
+fn parse(text: &str) -> Document<'_> {
+    Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..ParsingOptions::default() }).unwrap()
+}
+
+/// Every text inside the drawing, no two of them over each other.
+fn texts_are_apart(drawing: &Drawing) {
+    let all = Rect { x0: 0.0, y0: 0.0, x1: drawing.width, y1: drawing.height };
+    for (i, a) in drawing.texts.iter().enumerate() {
+        assert!(all.contains(&a.rect), "outside: {a:?} of {} × {}", drawing.width, drawing.height);
+        for b in &drawing.texts[i + 1..] {
+            assert!(!a.rect.overlaps(&b.rect), "{a:?} over {b:?}");
+        }
+    }
+}
+
+fn nothing_is_requested(markup: &str) {
+    let bare = markup.replace("xmlns=\"http://www.w3.org/2000/svg\"", "").replace("http-equiv", "");
+    for sign in ["http", "//", "url(", "@import", "<script", "src=", "<iframe", "<object", "srcset", "ping="] {
+        assert!(!bare.contains(sign), "{sign}");
+    }
+    assert_eq!(bare.matches("href=").count(), bare.matches("href=\"data:,\"").count());
+}
+
+#[test]
+fn the_page_is_well_formed_complete_and_small() {
+    let report = fixture::report();
+    let page = html::page(&report);
+    assert!(page.len() < 1_000_000, "{} bytes", page.len());
+    nothing_is_requested(&page);
+    let document = parse(&page);
+    let ids: Vec<&str> = document.descendants().filter_map(|n| n.attribute("id")).collect();
+    let wanted = [
+        "figure-mechanism",
+        "figure-force",
+        "figure-stress",
+        "requirements",
+        "checks",
+        "warnings",
+        "metrics",
+        "parameters",
+        "model",
+        "limits",
+        "sources",
+        "accuracy",
+        "provenance",
+    ];
+    for id in wanted {
+        assert!(ids.contains(&id), "{id}");
+    }
+    let mut unique = ids.clone();
+    unique.sort_unstable();
+    unique.dedup();
+    assert_eq!(unique.len(), ids.len());
+    let root = document.root_element();
+    assert_eq!(root.attribute("lang"), Some("en"));
+    for table in document.descendants().filter(|n| n.has_tag_name("table")) {
+        assert!(table.children().any(|c| c.has_tag_name("caption")));
+        assert!(table.descendants().filter(|n| n.has_tag_name("th")).all(|th| th.attribute("scope").is_some()));
+        let columns = table.descendants().filter(|n| n.has_tag_name("th") && n.attribute("scope") == Some("col")).count();
+        for row in table.descendants().filter(|n| n.has_tag_name("tr")) {
+            assert_eq!(row.children().filter(roxmltree::Node::is_element).count(), columns);
+        }
+    }
+    let data = document.descendants().filter(|n| n.has_tag_name("details"));
+    assert!(data.clone().count() == 2 && data.clone().all(|d| d.descendants().filter(|n| n.has_tag_name("tr")).count() <= 26));
+    for text in [
+        "1 of 5 requirements missed, 1 not assessed",
+        "+4.8 %",
+        "48.22 MPa",
+        "≤ 50.67 MPa",
+        "thin &amp; light",
+        "COMP020",
+        "lan2010",
+        "newton_iterations",
+        "1 mm ± 0.02 mm",
+        &report.input_sha256,
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn the_verdict_says_it_in_words_and_marks() {
+    let mut report = fixture::report();
+    let verdict = |page: &str| page.split("<p class=\"verdict").nth(1).and_then(|p| p.split("</p>").next()).unwrap().to_owned();
+    assert!(verdict(&html::page(&report)).contains('✗'));
+    for check in &mut report.outcome.checks {
+        if check.state == CheckState::Missed {
+            check.state = CheckState::Met;
+        }
+    }
+    assert!(verdict(&html::page(&report)).contains("1 of 5 requirements not assessed, 4 met") && html::page(&report).contains(">?<"));
+    for check in &mut report.outcome.checks {
+        check.state = CheckState::Met;
+    }
+    assert!(verdict(&html::page(&report)).contains("All 5 requirements met"));
+    report.outcome.checks.clear();
+    assert!(verdict(&html::page(&report)).contains("No requirements"));
+    assert!(!html::page(&report).contains("id=\"status\""));
+    report.outcome.status.kind = StatusKind::NoEquilibriumBeyond;
+    report.outcome.status.advice = Some("ask for less than 11 mm".to_owned());
+    let page = html::page(&report);
+    assert!(page.contains("Analysis: no equilibrium beyond.") && page.contains("ask for less than 11 mm"));
+    parse(&page);
+}
+
+#[test]
+fn text_from_files_never_becomes_markup() {
+    let mut report = fixture::report();
+    let nasty = "</title><script>alert(\"x\")</script><img src=x onerror='y'>&amp;\u{1}]]>";
+    report.outcome.title = String::from(nasty);
+    report.family = String::from(nasty);
+    report.variant = Some(nasty.to_owned());
+    report.input_name = String::from(nasty);
+    report.command = String::from(nasty);
+    report.version = String::from(nasty);
+    report.input_sha256 = String::from(nasty);
+    for check in &mut report.outcome.checks {
+        check.title = String::from(nasty);
+        check.basis = String::from(nasty);
+        check.advice = Some(nasty.to_owned());
+    }
+    for figure in &mut report.figures {
+        figure.title = String::from(nasty);
+        figure.caption = String::from(nasty);
+        match &mut figure.content {
+            FigureContent::Plot(plot) => {
+                plot.x.label = String::from(nasty);
+                plot.series[0].label = String::from(nasty);
+                plot.markers[0].label = String::from(nasty);
+                plot.markers[0].note = String::from(nasty);
+            }
+            FigureContent::Scene(scene) => scene.description = nasty.to_owned(),
+        }
+    }
+    let page = html::page(&report);
+    let document = parse(&page);
+    assert!(!page.contains("<script") && !page.contains("<img"));
+    assert!(document.descendants().all(|n| !n.has_tag_name("script") && !n.has_tag_name("img")));
+    let shown = nasty.replace('\u{1}', "");
+    assert!(document.descendants().any(|n| n.has_tag_name("h1") && n.text() == Some(&shown)));
+}
+
+#[test]
+fn figures_stand_alone_and_nothing_in_them_overlaps() {
+    for figure in &fixture::report().figures {
+        let drawing = svg::draw_figure(figure);
+        texts_are_apart(&drawing);
+        let file = svg::standalone(figure);
+        nothing_is_requested(&file);
+        let document = Document::parse(&file).unwrap();
+        let root = document.root_element();
+        assert_eq!(root.attribute("role"), Some("img"));
+        let child = |name: &str| root.children().find(|c| c.has_tag_name((root.tag_name().namespace().unwrap(), name)));
+        assert_eq!(child("title").unwrap().text(), Some(figure.title.as_str()));
+        assert!(child("desc").unwrap().text().unwrap().contains(&figure.caption));
+        assert!(child("style").unwrap().text().unwrap().contains("--fw-ink"));
+        assert!(drawing.texts.iter().all(|t| file.contains(&t.text)));
+    }
+}
+
+#[test]
+fn figures_of_every_size_keep_their_texts_apart() {
+    for (width, height) in [(320.0, 160.0), (480.0, 300.0), (760.0, 360.0), (1280.0, 500.0), (f64::NAN, -1.0)] {
+        for plot in [fixture::force_plot(), fixture::stress_plot()] {
+            texts_are_apart(&svg::draw_plot(&plot, PlotSize { width, height }));
+        }
+        texts_are_apart(&svg::draw_scene(&fixture::scene(), SceneSize { width, max_height: height }));
+    }
+    assert_eq!(svg::plot(&fixture::force_plot(), PlotSize::default()), svg::draw_plot(&fixture::force_plot(), PlotSize::default()).svg);
+    assert!(svg::scene(&fixture::scene(), SceneSize::default()).starts_with("<svg"));
+}
+
+#[test]
+fn styles_differ_without_colour() {
+    let svg = svg::plot(&fixture::force_plot(), PlotSize::default());
+    assert!(svg.contains("stroke-dasharray=\"6 4\""), "the reference is dashed");
+    let mut plot = fixture::force_plot();
+    for (series, stroke) in plot.series.iter_mut().zip([Stroke::Third, Stroke::Limit, Stroke::Main]) {
+        series.stroke = stroke;
+    }
+    let svg = svg::plot(&plot, PlotSize::default());
+    assert!(svg.contains("stroke-dasharray=\"11 4 2.5 4\"") && svg.contains("stroke-dasharray=\"10 5\""));
+}
+
+#[test]
+fn a_level_far_beyond_the_data_is_told_but_does_not_flatten_them() {
+    let drawing = svg::draw_plot(&fixture::stress_plot(), PlotSize::default());
+    let has = |text: &str| drawing.texts.iter().any(|t| t.text.contains(text));
+    assert!(has("760 MPa, beyond the scale") && has("60") && !has("800"));
+}
+
+#[test]
+fn the_same_report_gives_the_same_bytes() {
+    let report = fixture::report();
+    assert_eq!(html::page(&report), html::page(&fixture::report()));
+    assert_eq!(csv::curves(&report.outcome), csv::curves(&fixture::outcome()));
+}
+
+#[test]
+fn the_result_document_has_the_shape_that_scripts_rely_on() {
+    let mut outcome = fixture::outcome();
+    outcome.curves[0].branches[0].y[3] = f64::INFINITY;
+    let document = json::document(&outcome, "abc123", "0.1.0");
+    let keys: Vec<&String> = document.as_object().unwrap().keys().collect();
+    assert_eq!(
+        keys,
+        [
+            "schema",
+            "forcewright",
+            "mechanism",
+            "title",
+            "input_sha256",
+            "status",
+            "metrics",
+            "checks",
+            "curves",
+            "counters",
+            "sources",
+            "warnings"
+        ]
+    );
+    assert_eq!(document["schema"], 1);
+    assert_eq!(document["input_sha256"], "abc123");
+    assert_eq!(document["status"]["kind"], "complete");
+    assert!(document["status"].get("advice").is_none());
+    assert_eq!(document["metrics"]["stress_max"], serde_json::json!({ "value": 48.222_896e6, "unit": "Pa" }));
+    assert!(document["metrics"]["travel_at_allowable_stress"]["value"].is_null());
+    let checks = document["checks"].as_array().unwrap();
+    assert_eq!((checks[1]["state"].as_str(), checks[1]["unit"].as_str()), (Some("met"), Some("Pa")));
+    assert_eq!((checks[2]["state"].as_str(), checks[2]["required"].as_bool()), (Some("missed"), Some(true)));
+    assert!(checks[4]["value"].is_null() && checks[4]["margin"].is_null() && checks[4]["advice"].is_string());
+    let curve = &document["curves"][0];
+    assert_eq!((curve["x"]["unit"].as_str(), curve["y"]["unit"].as_str()), (Some("m"), Some("N")));
+    assert!(curve["branches"][0]["y"][3].is_null());
+    assert_eq!(curve["branches"][0]["x"][12], 1e-3);
+    assert_eq!(document["counters"]["newton_iterations"], 71);
+    assert_eq!(document["sources"], serde_json::json!(["lan2010", "reissner1972"]));
+    assert_eq!(document["warnings"][0]["code"], "COMP101");
+    // Numbers are the shortest decimals that give the same double again.
+    let text = document.to_string();
+    for x in &outcome.curves[0].branches[0].x[1..] {
+        assert!(text.contains(&format!("{x}")), "{x}");
+    }
+    assert!(serde_json::from_str::<serde_json::Value>(&text).is_ok());
+}
+
+fn rows(csv: &str) -> Vec<Vec<String>> {
+    assert!(csv.ends_with("\r\n"));
+    csv.trim_end().split("\r\n").map(|r| r.split(',').map(str::to_owned).collect()).collect()
+}
+
+#[test]
+fn curves_over_one_abscissa_share_a_table() {
+    let outcome = fixture::outcome();
+    let rows = rows(&csv::curves(&outcome));
+    assert_eq!(rows[0], ["branch", "displacement / mm", "force / N", "stress / MPa"]);
+    assert_eq!(rows.len(), 1 + outcome.curves[0].branches[0].x.len());
+    for (i, row) in rows[1..].iter().enumerate() {
+        let read = |column: usize| row[column].parse::<f64>().unwrap();
+        let curve = |c: usize| &outcome.curves[c];
+        assert_eq!(row[0], "loading");
+        assert_eq!(read(1).to_bits(), curve(0).x.display.from_si(curve(0).branches[0].x[i]).to_bits());
+        assert_eq!(read(2).to_bits(), curve(0).branches[0].y[i].to_bits());
+        assert_eq!(read(3).to_bits(), curve(1).y.display.from_si(curve(1).branches[0].y[i]).to_bits());
+    }
+}
+
+#[test]
+fn other_curves_are_written_below_each_other() {
+    let mut outcome = fixture::outcome();
+    outcome.curves[1].branches[0].x.truncate(2);
+    outcome.curves[1].branches[0].y = vec![f64::NAN, 1e300];
+    outcome.curves[1].branches[0].name = String::from("up, \"slow\"");
+    outcome.curves[1].x = fixture::axis("angle", "Angle", Dimension::Angle, "rad");
+    let text = csv::curves(&outcome);
+    let lines: Vec<&str> = text.split("\r\n").collect();
+    assert_eq!(lines[0], "curve,branch,displacement / mm,force / N,angle / rad,stress / MPa");
+    assert_eq!(lines[1], "force,loading,0,0,,");
+    let count = outcome.curves[0].branches[0].x.len();
+    assert_eq!(lines[1 + count], "stress,\"up, \"\"slow\"\"\",,,0,");
+    assert!(lines[2 + count].ends_with(",1e294"), "{}", lines[2 + count]);
+    outcome.curves.clear();
+    assert_eq!(csv::curves(&outcome), "branch\r\n");
+}
