@@ -59,7 +59,7 @@ const GENERATED: &[Generated] = &[
     },
     Generated {
         file: "docs/images/lan-table3.svg",
-        source: Source::Written(&["solve", "examples/compliant/lan-table3.toml"], "figures/force.svg"),
+        source: Source::Written(&["solve", "examples/compliant/lan-table3.toml"], "mechanism.svg"),
         region: Region::Whole,
     },
 ];

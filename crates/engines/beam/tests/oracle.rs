@@ -301,40 +301,63 @@ fn stretched_bar() {
     }
 }
 
-#[test]
-fn snap_through_of_a_shallow_truss() {
-    // Two straight hinged bars of half span a and rise h: F = 2 EA (1/L − 1/l)·(h − Δ)·…, with l² = a² + (h − Δ)².
-    // The rise is below the Euler load of the bars.
-    let (a, h) = (0.1, 4e-4);
-    let bar = |from: [f64; 2], to: [f64; 2]| Shape::from_chord([to[0] - from[0], to[1] - from[1]], &[]).unwrap();
+/// Half span and rise of a truss of two bars, m. The rise is below that at which the bars would buckle.
+const TRUSS: (f64, f64) = (0.1, 4e-4);
+
+/// Force of the truss whose tip has come down: 2 EA (1 − l/L) (h − Δ)/l with l² = a² + (h − Δ)² and L = l at rest.
+fn truss_force(down: f64) -> f64 {
+    let (a, h) = TRUSS;
+    let (rest, length) = (maths::hypot(a, h), maths::hypot(a, h - down));
+    2.0 * POM.axial_stiffness_n() * (1.0 - length / rest) * (h - down) / length
+}
+
+/// The truss with hinges at its tip, node 2.
+fn truss() -> Network {
+    let (a, h) = TRUSS;
     let places = [[-a, 0.0], [a, 0.0], [0.0, h]];
-    let beam =
-        |start: usize| Beam { start_joint: Joint::Rigid, end_joint: Joint::Hinged, ..rigid(start, 2, bar(places[start], places[2]), POM) };
-    let network = Network {
+    let beam = |start: usize| {
+        let shape = Shape::from_chord([-places[start][0], h], &[]).expect("a bar");
+        Beam { start_joint: Joint::Rigid, end_joint: Joint::Hinged, ..rigid(start, 2, shape, POM) }
+    };
+    Network {
         nodes: vec![node(places[0], Support::Pinned), node(places[1], Support::Pinned), node(places[2], Support::Free)],
         beams: vec![beam(0), beam(1)],
         drive: Drive::Displacement { node: 2, direction: [0.0, -1.0] },
-    };
-    let stations = [1e-4, 2e-4, 5e-4, 9e-4];
-    let path = solve(&network, &stations, &exact(Theory::Reissner));
-    let rest = maths::hypot(a, h);
+    }
+}
+
+#[test]
+fn snap_through_of_a_shallow_truss() {
+    let path = solve(&truss(), &[1e-4, 2e-4, 5e-4, 9e-4], &exact(Theory::Reissner));
     for point in &path.points {
-        let rise = h - point.control;
-        let length = maths::hypot(a, rise);
-        let want = -2.0 * POM.axial_stiffness_n() * (length - rest) / rest * rise / length;
-        near(point.force, want, 1e-9, "force");
+        near(point.force, truss_force(point.control), 1e-9, "force");
         assert!(point.nodes[2].rotation_rad.abs() < 1e-300);
     }
-    let dead = Network { drive: Drive::Force { node: 2, direction: [0.0, -1.0] }, ..network };
+    // A dead load cannot pass the largest force. Ten newtons are far beyond: the first step must not jump to the other side.
+    let dead = Network { drive: Drive::Force { node: 2, direction: [0.0, -1.0] }, ..truss() };
     let path = trace(&dead, &[10.0], &exact(Theory::Reissner), &mut |_| true).unwrap();
     let Status::NoEquilibriumBeyond { control } = path.status else { panic!("{}", path.status) };
-    // Largest force of the closed form.
-    let force = |d: f64| {
-        let length = maths::hypot(a, h - d);
-        -2.0 * POM.axial_stiffness_n() * (length - rest) / rest * (h - d) / length
-    };
-    let limit = -roots::minimise(|d| -force(d), 0.0, h, 1e-9).value;
+    let limit = -roots::minimise(|d| -truss_force(d), 0.0, TRUSS.1, 1e-9).value;
     near(control, limit, 1e-7, "limit load");
+}
+
+#[test]
+fn snap_back_of_a_truss_behind_a_soft_bar() {
+    // A soft bar below the tip in series with the truss: Δ = d + F(d)/k turns back where F'(d) = −k.
+    let soft = Section { young_pa: 1e4, thickness_m: 1e-3, depth_m: 1e-2, poisson: None };
+    let length = 0.1;
+    let stiffness = soft.axial_stiffness_n() / length;
+    let mut network = truss();
+    network.nodes.push(node([0.0, TRUSS.1 - length], VERTICAL_GUIDE));
+    network.beams.push(rigid(2, 3, Shape::new(vec![-FRAC_PI_2], length).unwrap(), soft));
+    network.drive = Drive::Displacement { node: 3, direction: [0.0, -1.0] };
+    let path = trace(&network, &[1e-4, 1e-2], &exact(Theory::Reissner), &mut |_| true).unwrap();
+    let Status::NoEquilibriumBeyond { control } = path.status else { panic!("{}", path.status) };
+    let total = |d: f64| d + truss_force(d) / stiffness;
+    near(control, -roots::minimise(|d| -total(d), 0.0, TRUSS.1, 1e-10).value, 1e-7, "limit displacement");
+    let tip = -path.points[0].nodes[2].displacement_m[1];
+    near(total(tip), 1e-4, 1e-9, "displacement");
+    near(path.points[0].force, truss_force(tip), 1e-9, "force");
 }
 
 #[test]
@@ -386,7 +409,7 @@ fn nodes_and_beam_ends_are_in_equilibrium() {
         close(state.end_rotation_rad, to.rotation_rad, 1e-15, "rotation");
         let [left, right] = state.stress_pa(0.4);
         near(0.5 * (left + right), state.axial_force_n(0.4) / beam.section.area_m2(), 1e-11, "axial stress");
-        let largest = (0..=1000).map(|i| state.stress_pa(f64::from(i) * 1e-3)).flatten().fold(0.0_f64, |m, s| m.max(s.abs()));
+        let largest = (0..=1000).flat_map(|i| state.stress_pa(f64::from(i) * 1e-3)).fold(0.0_f64, |m, s| m.max(s.abs()));
         let peak = state.peak_stress();
         assert!(peak.stress_pa >= largest && peak.stress_pa < largest * 1.00001, "{} {largest}", peak.stress_pa);
         // The ends of the deformed axis are at the nodes, and M changes by the force times the lever.

@@ -86,6 +86,26 @@ fn wild_networks_end_too() {
     assert!(complete > 10, "{complete}");
 }
 
+#[test]
+fn short_steps_find_the_same_branch() {
+    let mut random = SplitMix(5);
+    let every: Vec<f64> = (1..=272).map(|i| f64::from(i) * 0.5e-4).collect();
+    let (mut mild, mut wild) = (0, 0);
+    for index in 0..24 {
+        let (nodes, bend) = if index % 2 == 0 { (3.0, 1.5) } else { (6.0, 4.0) };
+        let Ok(network) = random_network(&mut random, nodes, bend) else { continue };
+        let settings = Settings { accuracy: 1e-5, ..Settings::default() };
+        let few = trace(&network, &[13.6e-3], &settings, &mut |_| true).unwrap();
+        let many = trace(&network, &every, &settings, &mut |_| true).unwrap();
+        assert_eq!(std::mem::discriminant(&few.status), std::mem::discriminant(&many.status), "{} {}", few.status, many.status);
+        if few.status.is_complete() {
+            near(few.points[0].force, many.points[271].force, 1e-4, "force");
+            *(if index % 2 == 0 { &mut mild } else { &mut wild }) += 1;
+        }
+    }
+    assert!(mild == 12 && wild >= 6, "{mild} {wild}");
+}
+
 /// State of a beam in cm and N: angle, moment, x, y.
 type State = [f64; 4];
 

@@ -1,1 +1,225 @@
-pub static ALL: &[forcewright_contract::family::Reproduction] = &[];
+//! The paper's numbers beside ours. The printed ones are data (`reference/lan2010.toml`); ours are computed in the run.
+
+use forcewright_base::diagnostics::{Diagnostics, Span};
+use forcewright_base::maths;
+use forcewright_beam::Shape;
+use forcewright_contract::family::{Progress, Reproduction, ReproductionRow};
+use forcewright_contract::project::{Choices, Project};
+use forcewright_contract::read;
+use forcewright_contract::tree::{self, Table, Value};
+
+use crate::analysis::{Behaviour, Measured, measure};
+use crate::design::{self, Design};
+use crate::spec::Spec;
+
+/// The papers of this family.
+pub static ALL: &[Reproduction] =
+    &[Reproduction { key: "lan2010", title: "Lan, Wang & Chen 2010: compliant constant-force mechanism of Table 3", run: lan2010 }];
+
+const ROWS: &str = include_str!("../../../../reference/lan2010.toml");
+const SHAPES: &str = include_str!("../../../../reference/lan2010-shapes.toml");
+const NODES: &str = include_str!("../../../../examples/compliant/lan-table3.toml");
+
+/// A design from a project text with settings; the texts are embedded and tested, so a failure gives rows that cannot agree.
+fn design_of(text: &str, set: &[&str]) -> Option<Design> {
+    let choices = Choices { variant: None, set: set.iter().map(|s| (*s).to_owned()).collect() };
+    let project = Project::from_text("embedded", text, &choices);
+    let mut diagnostics = project.diagnostics;
+    let mut spec: Spec = read::read(&project.tree, Span::default(), &mut diagnostics);
+    design::resolve(&mut spec, &mut diagnostics)
+}
+
+struct Solved {
+    design: Design,
+    behaviour: Behaviour,
+    measured: Measured,
+}
+
+fn solve(text: &str, set: &[&str]) -> Option<Solved> {
+    let design = design_of(text, set)?;
+    let behaviour = Behaviour::of(&design, &mut |_| true).ok()?;
+    let measured = measure(&design, &behaviour);
+    Some(Solved { design, behaviour, measured })
+}
+
+impl Solved {
+    fn get(&self, name: &str) -> f64 {
+        self.measured.get(name).unwrap_or(f64::NAN)
+    }
+
+    fn force(&self, displacement_m: f64) -> f64 {
+        self.behaviour.curve.as_ref().map_or(f64::NAN, |c| c.force(displacement_m))
+    }
+
+    /// Largest stress of one beam at the end of the path, Pa.
+    fn beam_stress_at_end(&self, beam: usize) -> f64 {
+        self.behaviour.path.points.last().and_then(|p| p.beams.get(beam)).map_or(f64::NAN, |b| b.peak_stress().stress_pa)
+    }
+}
+
+/// Everything that several rows use, solved once.
+struct Lan {
+    shapes: Solved,
+    nodes: Solved,
+    /// The shapes beyond the paper's travel: local minimum, jump.
+    longer: Solved,
+    thin: Solved,
+    scaled: Solved,
+    turning: Solved,
+    pinned: Solved,
+    reissner: Solved,
+    prototype: Solved,
+}
+
+impl Lan {
+    fn solve(progress: Progress<'_>) -> Option<Self> {
+        let mut done = 0.0;
+        let mut step = || {
+            done += 1.0 / 9.0;
+            progress(done)
+        };
+        let mut run = |text: &str, set: &[&str]| solve(text, set).filter(|_| step());
+        let inextensible = "model.beam=inextensible";
+        let (lengths, scaled) = scaled_text(2.5);
+        let mut scaled_set: Vec<&str> = vec!["design.thickness=1.3 mm", "design.depth=7 mm", "load.travel=34 mm"];
+        scaled_set.extend(lengths.iter().map(String::as_str));
+        Some(Self {
+            shapes: run(SHAPES, &[])?,
+            nodes: run(NODES, &[inextensible])?,
+            longer: run(SHAPES, &["load.travel=17 mm"])?,
+            thin: run(SHAPES, &["design.thickness=0.85 mm", "design.depth=16.28 mm", "load.travel=17 mm"])?,
+            scaled: run(&scaled, &scaled_set)?,
+            turning: run(SHAPES, &["design.nodes.n5.rotation=free"])?,
+            pinned: run(SHAPES, &["design.nodes.n1.support=pinned", "design.nodes.n2.support=pinned"])?,
+            reissner: run(SHAPES, &["model.beam=reissner"])?,
+            prototype: run(SHAPES, &["design.thickness=0.85 mm", "load.travel=16 mm"])?,
+        })
+    }
+
+    /// The number of a row, in its unit.
+    fn value(&self, id: &str) -> f64 {
+        let (mm, mpa) = (1e3, 1e-6);
+        let thin_end = self.thin.design.travel_m.min(16.8e-3);
+        let thin_start = || {
+            // c of the paper's travel of 16.8 mm, on the path that goes on a little.
+            let curve = self.thin.behaviour.curve.as_ref()?;
+            let level = crate::analysis::RANGE_FRACTION * curve.force(thin_end);
+            curve.crossings(level).into_iter().find(|x| *x > 0.0)
+        };
+        match id {
+            "force_shapes" => self.shapes.get("force_at_end"),
+            "force_nodes" => self.nodes.get("force_at_end"),
+            "range_start" => mm * self.shapes.get("range_start"),
+            "range_length" => mm * (self.shapes.design.travel_m - self.shapes.get("range_start")),
+            "range_ratio" => 100.0 * self.shapes.get("range_ratio"),
+            "stress_max" => mpa * self.shapes.get("stress_max"),
+            "stress_beam3" => mpa * self.shapes.beam_stress_at_end(2),
+            "travel_at_allowable" => mm * self.shapes.get("travel_at_allowable_stress"),
+            "sign_miss_printed" => mm * beam4_end(1.148).0,
+            "sign_miss_corrected" => mm * beam4_end(-1.148).0,
+            "sign_angle_printed" => beam4_end(1.148).1.to_degrees(),
+            "thin_travel" => mm * self.thin.get("travel_at_allowable_stress"),
+            "thin_range_start" => mm * thin_start().unwrap_or(f64::NAN),
+            "thin_range" => mm * (thin_end - thin_start().unwrap_or(f64::NAN)),
+            "thin_stress_drop" => mpa * (stress_at(&self.longer, thin_end) - stress_at(&self.thin, thin_end)),
+            "invariance" => self.invariance(),
+            "normalised_force" => normalised(&self.shapes),
+            "objective" => self.shapes.force(8.8e-3) / self.shapes.force(4e-3) - 1.0,
+            "local_max" => self.longer.get("force_local_max"),
+            "local_max_at" => mm * self.longer.get("force_local_max_at"),
+            "local_min" => self.longer.get("force_local_min"),
+            "local_min_at" => mm * self.longer.get("force_local_min_at"),
+            "jump_to" => mm * self.longer.behaviour.jump().and_then(|(_, to)| to).unwrap_or(f64::NAN),
+            "least_stiffness" => 1e-2 * self.shapes.get("stiffness_min"),
+            "slider_turns" => self.turning.get("force_at_end"),
+            "ground_pinned" => self.pinned.get("force_at_end"),
+            "reissner_force" => self.reissner.get("force_at_end"),
+            "prototype_force" => self.prototype.get("force_at_end"),
+            _ => self.shape_value(id),
+        }
+    }
+
+    /// `length_1` … `angle_4`: shapes that follow from the printed nodes.
+    fn shape_value(&self, id: &str) -> f64 {
+        let Some((what, number)) = id.split_once('_') else { return f64::NAN };
+        let beam = number.parse::<usize>().ok().and_then(|n| self.nodes.design.network.beams.get(n.checked_sub(1)?));
+        match (what, beam) {
+            ("length", Some(beam)) => 1e3 * beam.shape.length_m(),
+            // The same direction in the turn that the paper prints.
+            ("angle", Some(beam)) => {
+                let angle = beam.shape.angle_rad()[0];
+                let turn = std::f64::consts::TAU;
+                if number == "3" && angle > 0.0 { angle - turn } else { angle }
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    fn invariance(&self) -> f64 {
+        normalised(&self.scaled) / normalised(&self.shapes) - 1.0
+    }
+}
+
+/// F·Lx²/EI with the distance of n1 and n2 for Lx, at the end of the path.
+fn normalised(solved: &Solved) -> f64 {
+    let nodes = &solved.design.network.nodes;
+    // The paper's Lx = 3.2 cm spans from n1 to n2 in the printed design; here the scale of lengths is that of its depth of travel.
+    let lx = 3.2e-2 * solved.design.travel_m / 13.6e-3;
+    let ei = solved.design.network.beams.first().map_or(f64::NAN, |b| b.section.bending_stiffness_n_m2());
+    debug_assert!(nodes.len() == 5);
+    solved.get("force_at_end") * lx * lx / ei
+}
+
+fn stress_at(solved: &Solved, displacement_m: f64) -> f64 {
+    solved.behaviour.path.at(displacement_m).ok().and_then(|p| p.peak_stress()).map_or(f64::NAN, |(_, s)| s.stress_pa)
+}
+
+/// Settings that scale the lengths of the printed shapes, and the text to put them on.
+fn scaled_text(scale: f64) -> (Vec<String>, String) {
+    let lengths = [3.404, 1.987, 2.199, 1.959];
+    let set = lengths.iter().enumerate().map(|(i, l)| format!("design.beams.b{}.length={} cm", i + 1, l * scale));
+    let n1 = format!("design.nodes.n1.at=[\"{} cm\", \"0 cm\"]", 0.25 * scale);
+    (set.chain(std::iter::once(n1)).collect(), SHAPES.to_owned())
+}
+
+/// How far beam 4 of Table 3 with this c2 ends from n5, m, and the angle of its chord to the nodes' one, rad.
+fn beam4_end(c2: f64) -> (f64, f64) {
+    let wanted = [2.5e-3 - 12.44e-3, 40e-3 - 24e-3];
+    let Ok(shape) = Shape::new(vec![2.394, 0.226, c2], 19.59e-3) else { return (f64::NAN, f64::NAN) };
+    let chord = shape.chord_m();
+    let turn = maths::atan2(chord[1], chord[0]) - maths::atan2(wanted[1], wanted[0]);
+    (maths::hypot(chord[0] - wanted[0], chord[1] - wanted[1]), turn.abs())
+}
+
+fn lan2010(progress: Progress<'_>) -> Vec<ReproductionRow> {
+    let mut diagnostics = Diagnostics::default();
+    let table = tree::parse(ROWS, Span::default().source, &mut diagnostics);
+    let Some(Value::List(rows)) = table.get("row").map(|e| &e.item.value) else { return Vec::new() };
+    let lan = Lan::solve(progress);
+    let tables = rows.iter().filter_map(|item| if let Value::Table(table) = &item.value { Some(table) } else { None });
+    tables
+        .map(|table| ReproductionRow {
+            quantity: text(table, "quantity"),
+            place: text(table, "where"),
+            paper: number(table, "paper"),
+            ours: lan.as_ref().map_or(f64::NAN, |lan| lan.value(&text(table, "id"))),
+            unit: text(table, "unit"),
+            explained: number(table, "explained"),
+            why: text(table, "why"),
+        })
+        .collect()
+}
+
+fn text(table: &Table, key: &str) -> String {
+    match table.get(key).map(|e| &e.item.value) {
+        Some(Value::Text(text)) => text.clone(),
+        _ => String::new(),
+    }
+}
+
+fn number(table: &Table, key: &str) -> Option<f64> {
+    match table.get(key).map(|e| &e.item.value) {
+        Some(Value::Number(number)) => Some(*number),
+        _ => None,
+    }
+}

@@ -352,7 +352,7 @@ fn provenance(report: &Report) -> String {
     let content = format!(
         "<dl class=\"statements\">\n<div><dt>Program</dt><dd>Forcewright {}</dd></div>\n\
          <div><dt>Read</dt><dd><code>{}</code>{variant}</dd></div>\n\
-         <div><dt>SHA-256 of everything read</dt><dd><code class=\"hash\">{}</code></dd></div>\n</dl>\n\
+         <div><dt>SHA-256 of all read</dt><dd><code class=\"hash\">{}</code></dd></div>\n</dl>\n\
          <p>The same numbers again, on any machine:</p>\n<pre><code>{}</code></pre>\n",
         escape(&report.version),
         escape(&report.input_name),

@@ -4,6 +4,9 @@ use std::fmt::Write as _;
 
 use crate::escape::escape;
 
+/// Tables with at most so many rows are not split between pages.
+const WHOLE: usize = 14;
+
 /// How a column is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Column {
@@ -29,8 +32,10 @@ impl Column {
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     columns: Vec<Column>,
+    label: String,
     head: String,
     body: String,
+    rows: usize,
     class: &'static str,
 }
 
@@ -42,11 +47,12 @@ impl Table {
             let _ = write!(head, "<th scope=\"col\"{}>{}</th>", column.class(), escape(title));
         }
         head.push_str("</tr></thead>\n");
-        Self { columns: columns.iter().map(|c| c.1).collect(), head, body: String::new(), class }
+        Self { columns: columns.iter().map(|c| c.1).collect(), label: escape(caption), head, body: String::new(), rows: 0, class }
     }
 
     /// Adds a row; its first cell heads it.
     pub(crate) fn row(&mut self, cells: &[String]) {
+        self.rows += 1;
         self.body.push_str("<tr>");
         for (i, (cell, column)) in cells.iter().zip(&self.columns).enumerate() {
             let class = column.class();
@@ -61,6 +67,13 @@ impl Table {
 
     /// The finished table, in a box that scrolls sideways on narrow screens.
     pub(crate) fn finish(self) -> String {
-        format!("<div class=\"scroll\"><table class=\"{}\">\n{}<tbody>\n{}</tbody>\n</table></div>\n", self.class, self.head, self.body)
+        let Self { label, head, body, class, .. } = self;
+        // Short tables stay on one page of paper.
+        let whole = if self.rows <= WHOLE { " whole" } else { "" };
+        // The focus lets keyboards scroll.
+        format!(
+            "<div class=\"scroll{whole}\" role=\"group\" tabindex=\"0\" aria-label=\"{label}\"><table class=\"{class}\">\n\
+             {head}<tbody>\n{body}</tbody>\n</table></div>\n"
+        )
     }
 }

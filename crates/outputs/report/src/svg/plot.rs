@@ -34,7 +34,7 @@ impl PlotSize {
 
 const TICK: Style = Style::muted(13.0);
 const TITLE: Style = Style { size: 14.0, bold: true, paint: Paint::Ink, halo: false };
-const SPAN: Style = Style { size: 13.0, bold: true, paint: Paint::Span, halo: false };
+const SPAN: Style = Style::label(13.0, Paint::Span);
 const SPAN_ROW: f64 = 20.0;
 const EDGE: f64 = 14.0;
 
@@ -200,7 +200,9 @@ fn grounds(canvas: &mut Canvas, frame: &Frame, spans: &[SpanLabel]) {
         canvas.segments(&[[[s.x0, y], [s.x1, y]], [[s.x0, y - 4.0], [s.x0, area.y0]], [[s.x1, y - 4.0], [s.x1, area.y0]]], "");
         canvas.segments(&[[[s.x0, area.y0], [s.x0, area.y1]], [[s.x1, area.y0], [s.x1, area.y1]]], r#"stroke-dasharray="3 4""#);
         canvas.close();
-        canvas.text(&s.text, [s.text_rect.x0, y - 5.0], Anchor::Start, SPAN);
+    }
+    for s in spans {
+        canvas.text(&s.text, [s.text_rect.x0, area.y0 - 10.0 - s.row as f64 * SPAN_ROW], Anchor::Start, SPAN);
     }
     for band in &frame.plot.bands {
         let (Some(a), Some(b)) = (frame.at_y(band.from), frame.at_y(band.to)) else { continue };

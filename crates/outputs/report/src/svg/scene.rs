@@ -391,7 +391,7 @@ fn entries(scene: &Scene) -> Vec<Entry> {
             _ => false,
         })
     };
-    let coloured = scene.scale.is_some();
+    let coloured = scene.scale.is_some() && scene.items.iter().any(|i| matches!(i, Item::Line { values: Some(_), .. }));
     let mut out = Vec::new();
     let mut add = |role: Role, paint, width, dash, text: &str| {
         if has(role) {
