@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, Command, ValueHint};
 const EXIT_CODES: &str = "Exit codes: 0 requirements met, 1 a requirement missed, 2 error in the file or the call, 3 not converged, 4 input/output, 130 interrupted.";
 
 /// The whole command.
-pub fn command() -> Command {
+pub(crate) fn command() -> Command {
     Command::new("forcewright")
         .version(forcewright::VERSION)
         .about("Passive force-shaping mechanisms of robots: a force curve in, a mechanism out.")
@@ -26,15 +26,13 @@ fn file() -> Arg {
 }
 
 fn choices(command: Command) -> Command {
-    command
-        .arg(Arg::new("variant").long("variant").value_name("NAME").help("Use a variant of the file"))
-        .arg(
-            Arg::new("set")
-                .long("set")
-                .value_name("KEY=VALUE")
-                .action(ArgAction::Append)
-                .help("Replace one value for this run, such as design.thickness=\"0.9 mm\" (may be repeated)"),
-        )
+    command.arg(Arg::new("variant").long("variant").value_name("NAME").help("Use a variant of the file")).arg(
+        Arg::new("set")
+            .long("set")
+            .value_name("KEY=VALUE")
+            .action(ArgAction::Append)
+            .help("Replace one value for this run, such as design.thickness=\"0.9 mm\" (may be repeated)"),
+    )
 }
 
 fn json() -> Arg {
@@ -86,7 +84,9 @@ fn reproduce() -> Command {
     let papers: Vec<&'static str> = forcewright::reproductions().map(|r| r.key).collect();
     Command::new("reproduce")
         .about("Compute a paper's numbers and print them beside the paper's, with the difference and its reason")
-        .arg(Arg::new("paper").value_name("PAPER").value_parser(PossibleValuesParser::new(papers)).help("Key of the paper; without it, all"))
+        .arg(
+            Arg::new("paper").value_name("PAPER").value_parser(PossibleValuesParser::new(papers)).help("Key of the paper; without it, all"),
+        )
         .arg(Arg::new("format").long("format").value_parser(["text", "markdown", "json"]).default_value("text").help("How to print it"))
 }
 
@@ -101,7 +101,12 @@ fn schema() -> Command {
     let ids: Vec<&'static str> = forcewright::FAMILIES.iter().map(|f| f.id()).collect();
     Command::new("schema")
         .about("Print the schema of project files, for editors and as documentation")
-        .arg(Arg::new("mechanism").value_name("MECHANISM").value_parser(PossibleValuesParser::new(ids)).help("Family; may be left out while there is only one"))
+        .arg(
+            Arg::new("mechanism")
+                .value_name("MECHANISM")
+                .value_parser(PossibleValuesParser::new(ids))
+                .help("Family; may be left out while there is only one"),
+        )
         .arg(
             Arg::new("format")
                 .long("format")

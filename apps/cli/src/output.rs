@@ -8,23 +8,23 @@ use forcewright::base::diagnostics::Explanation;
 use crate::exit;
 
 /// Prints to standard output. A closed pipe (`… | head`) is the reader's choice, not an error.
-pub fn print(text: &str) {
+pub(crate) fn print(text: &str) {
     let mut out = io::stdout().lock();
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 /// Prints to standard error.
-pub fn narrate(text: &str) {
+pub(crate) fn narrate(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
 /// Whether standard error takes colour.
-pub fn colour_on_stderr() -> bool {
+pub(crate) fn colour_on_stderr() -> bool {
     io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
 /// Whether standard output takes colour.
-pub fn colour_on_stdout() -> bool {
+pub(crate) fn colour_on_stdout() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
@@ -32,7 +32,7 @@ pub fn colour_on_stdout() -> bool {
 ///
 /// # Errors
 /// The system's error.
-pub fn write(path: &Path, text: &str) -> io::Result<()> {
+pub(crate) fn write(path: &Path, text: &str) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file = tempfile::Builder::new().prefix(".forcewright-").tempfile_in(folder)?;
     file.write_all(text.as_bytes())?;
@@ -55,7 +55,7 @@ fn readable_by_others(_: &std::fs::File) -> io::Result<()> {
 }
 
 /// Says why a file could not be written; the exit code for it.
-pub fn write_failed(path: &Path, error: &io::Error) -> u8 {
+pub(crate) fn write_failed(path: &Path, error: &io::Error) -> u8 {
     let way_out = match error.kind() {
         ErrorKind::PermissionDenied => "choose a folder that you may write to",
         ErrorKind::StorageFull => "free some space",
@@ -67,10 +67,18 @@ pub fn write_failed(path: &Path, error: &io::Error) -> u8 {
 }
 
 /// Codes of the command line itself.
-pub const CODES: &[Explanation] = &[
-    Explanation { code: "E0120", title: "a result cannot be written", text: "The folder given with `--out` or `--dir` cannot be written to. Nothing is left half written. Exit code 4." },
+pub(crate) const CODES: &[Explanation] = &[
+    Explanation {
+        code: "E0120",
+        title: "a result cannot be written",
+        text: "The folder given with `--out` or `--dir` cannot be written to. Nothing is left half written. Exit code 4.",
+    },
     Explanation { code: "E0121", title: "no such example", text: "`forcewright new --list` names the examples of the gallery." },
-    Explanation { code: "E0122", title: "a file exists already", text: "`forcewright new` does not overwrite files unless `--force` is given." },
+    Explanation {
+        code: "E0122",
+        title: "a file exists already",
+        text: "`forcewright new` does not overwrite files unless `--force` is given.",
+    },
     Explanation { code: "E0123", title: "no such code", text: "`forcewright explain --all` prints every code." },
     Explanation { code: "E0124", title: "several families", text: "Name the family whose schema is wanted." },
 ];

@@ -10,7 +10,7 @@ const PATIENCE: Duration = Duration::from_millis(300);
 const STEPS: u64 = 1000;
 
 /// Shows how far a piece of work is.
-pub struct Progress {
+pub(crate) struct Progress {
     started: Instant,
     what: &'static str,
     bar: Option<ProgressBar>,
@@ -18,12 +18,12 @@ pub struct Progress {
 
 impl Progress {
     /// Progress of a piece of work that starts now.
-    pub fn new(what: &'static str) -> Self {
+    pub(crate) fn new(what: &'static str) -> Self {
         Self { started: Instant::now(), what, bar: None }
     }
 
     /// Shows a finished fraction.
-    pub fn show(&mut self, fraction: f64) {
+    pub(crate) fn show(&mut self, fraction: f64) {
         if self.bar.is_none() && self.started.elapsed() >= PATIENCE && stderr().is_terminal() {
             let bar = ProgressBar::new(STEPS);
             if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent} % {eta} left") {
@@ -39,7 +39,7 @@ impl Progress {
     }
 
     /// Takes the bar away.
-    pub fn done(self) {
+    pub(crate) fn done(self) {
         if let Some(bar) = self.bar {
             bar.finish_and_clear();
         }

@@ -2,7 +2,7 @@
 
 /// How a column is aligned.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Align {
+pub(crate) enum Align {
     /// Texts.
     Left,
     /// Numbers.
@@ -10,8 +10,9 @@ pub enum Align {
 }
 
 /// Rows of cells as aligned columns, two spaces apart, no trailing blanks.
-pub fn columns(rows: &[Vec<String>], align: &[Align]) -> String {
-    let widths: Vec<usize> = (0..align.len()).map(|c| rows.iter().filter_map(|r| r.get(c)).map(|t| t.chars().count()).max().unwrap_or(0)).collect();
+pub(crate) fn columns(rows: &[Vec<String>], align: &[Align]) -> String {
+    let widths: Vec<usize> =
+        (0..align.len()).map(|c| rows.iter().filter_map(|r| r.get(c)).map(|t| t.chars().count()).max().unwrap_or(0)).collect();
     let mut out = String::new();
     for row in rows {
         let cells: Vec<String> = row

@@ -241,7 +241,8 @@ impl<'a> Excerpt<'a> {
         };
         // Control characters would move the cursor of the terminal that shows them.
         let line = text[from..to].chars().map(|c| if c.is_control() && c != '\t' { '·' } else { c }).collect::<String>();
-        let keep = |at: usize| text[from..at.clamp(from, to)].chars().map(|c| if c.is_control() && c != '\t' { 2 } else { c.len_utf8() }).sum();
+        let keep =
+            |at: usize| text[from..at.clamp(from, to)].chars().map(|c| if c.is_control() && c != '\t' { 2 } else { c.len_utf8() }).sum();
         Some(Self { name: &source.name, number: text[..start].matches('\n').count() + 1, start: keep(start), end: keep(end), line })
     }
 }
@@ -280,7 +281,9 @@ mod tests {
     #[test]
     fn hostile_places_are_shown_without_panic() {
         let long = format!("x = \"{}\"", "ä".repeat(100_000));
-        for (text, start, end) in [("", 0, 0), ("abc", 99, 200), ("a\u{7}b\r\n", 1, 4), ("a\nb\n", 0, 4), ("ß", 1, 1), (long.as_str(), 50_000, 50_400)] {
+        for (text, start, end) in
+            [("", 0, 0), ("abc", 99, 200), ("a\u{7}b\r\n", 1, 4), ("a\nb\n", 0, 4), ("ß", 1, 1), (long.as_str(), 50_000, 50_400)]
+        {
             let (sources, all) = one(text, start, end);
             let shown = all.render(&sources, false);
             assert!(shown.contains("E0201") && shown.len() < 3000, "{shown}");

@@ -69,7 +69,14 @@ const DIMENSIONS: &[DimensionRow] = &[
     row(Dimension::Torque, "a torque", exponents(1, 2, -2, 0, 0, 0, 0), "N*m", "400 N*mm", "N*mm, N*m, kgf*cm, lbf*in"),
     row(Dimension::Energy, "an energy", exponents(1, 2, -2, 0, 0, 0, 1), "J", "12 mJ", "mJ, J, kJ, Wh"),
     row(Dimension::Stiffness, "a stiffness", exponents(1, 0, -2, 0, 0, 0, 0), "N/m", "1.38 N/mm", "N/m, N/mm, lbf/in"),
-    row(Dimension::RotationalStiffness, "a rotational stiffness", exponents(1, 2, -2, 0, 0, -1, 0), "N*m/rad", "800 N*m/rad", "N*m/rad, N*mm/deg"),
+    row(
+        Dimension::RotationalStiffness,
+        "a rotational stiffness",
+        exponents(1, 2, -2, 0, 0, -1, 0),
+        "N*m/rad",
+        "800 N*m/rad",
+        "N*m/rad, N*mm/deg",
+    ),
     row(Dimension::Mass, "a mass", exponents(1, 0, 0, 0, 0, 0, 0), "kg", "90 g", "mg, g, kg, lb"),
     row(Dimension::Density, "a density", exponents(1, -3, 0, 0, 0, 0, 0), "kg/m^3", "1410 kg/m^3", "kg/m^3, g/cm^3"),
     row(Dimension::Inertia, "a moment of inertia", exponents(1, 2, 0, 0, 0, 0, 0), "kg*m^2", "2e-5 kg*m^2", "kg*m^2, g*mm^2"),
@@ -331,11 +338,7 @@ impl Unit {
     pub fn from_si(&self, si: f64) -> f64 {
         // Dividing by an exact power of ten gives the decimal that was typed back; multiplying by its inverse may not.
         let scaled = si / self.mantissa;
-        if self.power < 0 {
-            scaled * crate::maths::powi(10.0, -self.power)
-        } else {
-            scaled / crate::maths::powi(10.0, self.power)
-        }
+        if self.power < 0 { scaled * crate::maths::powi(10.0, -self.power) } else { scaled / crate::maths::powi(10.0, self.power) }
     }
 
     /// SI value of a decimal in this unit; exact to the last bit when the unit is a power of ten times the SI unit.
@@ -618,15 +621,13 @@ mod tests {
     fn torque_is_not_energy() {
         assert!(Quantity::parse("1 J", Dimension::Torque).is_err());
         assert!(Quantity::parse("1 N*m", Dimension::Energy).is_err());
-        assert_eq!(
-            Quantity::parse("400 N", Dimension::Torque),
-            Err(QuantityError::WrongDimension("N".to_owned(), Some(Dimension::Force)))
-        );
+        assert_eq!(Quantity::parse("400 N", Dimension::Torque), Err(QuantityError::WrongDimension("N".to_owned(), Some(Dimension::Force))));
     }
 
     #[test]
     fn tolerances_in_every_spelling() {
-        for text in ["0.85 mm ± 0.02 mm", "0.85 mm +/- 0.02 mm", "0.85 ± 0.02 mm", "0.85 mm ± 20 µm", "0.85mm±0.02mm", "0.85 mm ± 0.02"] {
+        for text in ["0.85 mm ± 0.02 mm", "0.85 mm +/- 0.02 mm", "0.85 ± 0.02 mm", "0.85 mm ± 20 µm", "0.85mm±0.02mm", "0.85 mm ± 0.02"]
+        {
             let q = length(text);
             assert!((q.si - 0.85e-3).abs() < 1e-18 && (q.half_width_si().unwrap() - 2e-5).abs() < 1e-18, "{text}");
         }

@@ -8,19 +8,47 @@ const fn code(code: &'static str, title: &'static str, text: &'static str) -> Ex
 
 /// Codes that do not depend on the family: `E01xx` files and syntax, `E02xx` values, `E03xx` keys and names, `W…` warnings.
 pub const CODES: &[Explanation] = &[
-    code("E0101", "a file cannot be read", "The file does not exist, or the system refuses to read it. Exit code 4.\n\nPaths in `extends` are relative to the file that names them."),
-    code("E0102", "not UTF-8 text", "Project files are UTF-8. The message names the first byte that is not. Editors call the setting \"encoding\"."),
-    code("E0103", "file too large", "A project file has a few kilobytes; at most 2 MiB are read. Measured data belongs into CSV files that the project names."),
+    code(
+        "E0101",
+        "a file cannot be read",
+        "The file does not exist, or the system refuses to read it. Exit code 4.\n\nPaths in `extends` are relative to the file that names them.",
+    ),
+    code(
+        "E0102",
+        "not UTF-8 text",
+        "Project files are UTF-8. The message names the first byte that is not. Editors call the setting \"encoding\".",
+    ),
+    code(
+        "E0103",
+        "file too large",
+        "A project file has a few kilobytes; at most 2 MiB are read. Measured data belongs into CSV files that the project names.",
+    ),
     code("E0104", "not a file", "The path names a directory, a pipe or a device. Exit code 4."),
     code(
         "E0105",
         "not valid TOML",
         "Project files are written in TOML 1.0: `[table]` headers, `key = value` lines, texts in quotes, `#` comments.\n\nExample:\n\n    [design]\n    thickness = \"1 mm\"     # a text, because it has a unit\n\nThe most frequent causes are a missing quote and a bracket that is not closed.",
     ),
-    code("E0106", "a key is given twice", "TOML allows each key once per table. Keep one. To keep two values at hand, use `[variants.name]`."),
-    code("E0107", "nested too deep", "Brackets or dotted keys nest deeper than any project file needs. Look for a bracket that is not closed."),
-    code("E0108", "files extend one another in a circle", "A file may extend another, which may extend a third, at most 16 in a row, but the chain must end. Remove one `extends`."),
-    code("E0110", "no such variant", "`--variant NAME` chooses one of the tables `[variants.NAME]` of the file (or of a file that it extends)."),
+    code(
+        "E0106",
+        "a key is given twice",
+        "TOML allows each key once per table. Keep one. To keep two values at hand, use `[variants.name]`.",
+    ),
+    code(
+        "E0107",
+        "nested too deep",
+        "Brackets or dotted keys nest deeper than any project file needs. Look for a bracket that is not closed.",
+    ),
+    code(
+        "E0108",
+        "files extend one another in a circle",
+        "A file may extend another, which may extend a third, at most 16 in a row, but the chain must end. Remove one `extends`.",
+    ),
+    code(
+        "E0110",
+        "no such variant",
+        "`--variant NAME` chooses one of the tables `[variants.NAME]` of the file (or of a file that it extends).",
+    ),
     code(
         "E0111",
         "a setting is not understood",
@@ -31,22 +59,70 @@ pub const CODES: &[Explanation] = &[
         "wrong quantity",
         "The unit is known, but it is the unit of something else: a force where a length is needed, a torque where an energy is needed (N·m and J are kept apart on purpose).",
     ),
-    code("E0202", "not a number", "A quantity starts with a decimal number with a point: `12.5 mm`, `2e-5 m`. Decimal commas are refused, because `1,234` means different numbers in different countries."),
-    code("E0203", "unknown unit", "Units are products and quotients of known symbols: `mm`, `N/mm`, `kg*m^2`, `N·m/rad`. Capitals matter: `MPa`, `mN`."),
-    code("E0204", "out of range", "The value is a number of the right kind, but outside of what the parameter can mean. The message names the range in the unit typed."),
+    code(
+        "E0202",
+        "not a number",
+        "A quantity starts with a decimal number with a point: `12.5 mm`, `2e-5 m`. Decimal commas are refused, because `1,234` means different numbers in different countries.",
+    ),
+    code(
+        "E0203",
+        "unknown unit",
+        "Units are products and quotients of known symbols: `mm`, `N/mm`, `kg*m^2`, `N·m/rad`. Capitals matter: `MPa`, `mN`.",
+    ),
+    code(
+        "E0204",
+        "out of range",
+        "The value is a number of the right kind, but outside of what the parameter can mean. The message names the range in the unit typed.",
+    ),
     code("E0205", "not a finite number", "`nan`, `inf` and numbers beyond 1.8e308 cannot be computed with."),
-    code("E0206", "wrong kind of value", "A text where a list is needed, a table where a number is needed, and the like. Values with units are texts in quotes; counts and coefficients are bare numbers."),
-    code("E0207", "not a tolerance", "After `±` (or `+/-`) stands a positive half width in the same quantity, or a percentage: `0.85 mm ± 0.02 mm`, `0.85 mm ± 2 %`. Diameters also take ISO 286 fits: `17.6 mm h7`."),
-    code("E0208", "unit missing", "Every number with a dimension carries its unit, in quotes: `thickness = \"1 mm\"`. Bare numbers are dimensionless. So nobody has to guess."),
-    code("E0301", "unknown key", "The key is not part of the language at this place. The help names the nearest known one. Keys that only comment belong into `#` comments."),
-    code("E0302", "a key is missing", "The table needs this key. What it means is said in the help and in the parameter table of the documentation (`forcewright schema`)."),
+    code(
+        "E0206",
+        "wrong kind of value",
+        "A text where a list is needed, a table where a number is needed, and the like. Values with units are texts in quotes; counts and coefficients are bare numbers.",
+    ),
+    code(
+        "E0207",
+        "not a tolerance",
+        "After `±` (or `+/-`) stands a positive half width in the same quantity, or a percentage: `0.85 mm ± 0.02 mm`, `0.85 mm ± 2 %`. Diameters also take ISO 286 fits: `17.6 mm h7`.",
+    ),
+    code(
+        "E0208",
+        "unit missing",
+        "Every number with a dimension carries its unit, in quotes: `thickness = \"1 mm\"`. Bare numbers are dimensionless. So nobody has to guess.",
+    ),
+    code(
+        "E0301",
+        "unknown key",
+        "The key is not part of the language at this place. The help names the nearest known one. Keys that only comment belong into `#` comments.",
+    ),
+    code(
+        "E0302",
+        "a key is missing",
+        "The table needs this key. What it means is said in the help and in the parameter table of the documentation (`forcewright schema`).",
+    ),
     code("E0303", "unknown word", "The parameter takes one of a closed set of words; the help lists them."),
     code("E0304", "unknown name", "A name refers to a member (a node, a beam) that the file does not define."),
     code("E0305", "two keys exclude each other", "Only one of the two can be given, because both say the same thing. Keep one."),
-    code("E0306", "not available in this version", "The key is part of the language, but this version of the program cannot do it yet. It is refused rather than ignored, because ignoring it would give another mechanism."),
+    code(
+        "E0306",
+        "not available in this version",
+        "The key is part of the language, but this version of the program cannot do it yet. It is refused rather than ignored, because ignoring it would give another mechanism.",
+    ),
     code("E0307", "a name is given twice", "Members of a list are called by name in paths and reports, so names are unique."),
-    code("E0308", "unknown material", "`material.use` names an entry of the catalogue. Without `use`, give `young_modulus`, `poisson_ratio` and `yield_stress` yourself."),
+    code(
+        "E0308",
+        "unknown material",
+        "`material.use` names an entry of the catalogue. Without `use`, give `young_modulus`, `poisson_ratio` and `yield_stress` yourself.",
+    ),
     code("E0309", "unknown mechanism", "`mechanism` names one of the families of this program; the help lists them."),
-    code("E0311", "wrong number of entries", "A list is too short or too long: a point has two coordinates, a beam joins two nodes, and no collection has more than 500 members."),
-    code("W0101", "a section is not used", "The section belongs to a study (optimise, tolerance, calibrate, …) that this version does not have. It does not change the result of `solve`."),
+    code(
+        "E0311",
+        "wrong number of entries",
+        "A list is too short or too long: a point has two coordinates, a beam joins two nodes, and no collection has more than 500 members.",
+    ),
+    code(
+        "W0101",
+        "a section is not used",
+        "The section belongs to a study (optimise, tolerance, calibrate, …) that this version does not have. It does not change the result of `solve`.",
+    ),
 ];

@@ -20,7 +20,10 @@ pub struct Header {
 impl Describe for Header {
     fn describe(&mut self, v: &mut dyn Visitor) {
         let one = f64::from(SCHEMA);
-        v.count(&Param::new("schema", "Version of the project-file language.").of(Dimension::Ratio).within(one, one).required(), &mut self.schema);
+        v.count(
+            &Param::new("schema", "Version of the project-file language.").of(Dimension::Ratio).within(one, one).required(),
+            &mut self.schema,
+        );
         v.text(&Param::new("mechanism", "Family of the mechanism.").required(), &mut self.mechanism);
         v.text(&Param::new("title", "Title of the project, shown in reports."), &mut self.title);
         v.text(&Param::new("extends", "Another project file; this one is laid over it, key by key."), &mut self.extends);

@@ -86,7 +86,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn note<T>(&mut self, param: &Param, slot: &Slot<T>, show: impl Fn(&T) -> String) {
+    fn note<T>(&mut self, param: &Param, slot: Option<&Located<T>>, show: impl Fn(&T) -> String) {
         let Some(located) = slot else { return };
         self.found.push(ParameterRow {
             path: format!("{}{}", self.prefix, param.key),
@@ -115,31 +115,31 @@ fn list<T>(items: &[T], show: impl Fn(&T) -> String) -> String {
 
 impl Visitor for Rows {
     fn quantity(&mut self, param: &Param, slot: &mut Slot<Quantity>) {
-        self.note(param, slot, ToString::to_string);
+        self.note(param, slot.as_ref(), ToString::to_string);
     }
     fn count(&mut self, param: &Param, slot: &mut Slot<u32>) {
-        self.note(param, slot, ToString::to_string);
+        self.note(param, slot.as_ref(), ToString::to_string);
     }
     fn numbers(&mut self, param: &Param, slot: &mut Slot<Vec<f64>>) {
-        self.note(param, slot, |v| list(v, ToString::to_string));
+        self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));
     }
     fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>) {
-        self.note(param, slot, |v| list(v, ToString::to_string));
+        self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));
     }
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>) {
-        self.note(param, slot, |v| list(v, ToString::to_string));
+        self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));
     }
     fn text(&mut self, param: &Param, slot: &mut Slot<String>) {
-        self.note(param, slot, Clone::clone);
+        self.note(param, slot.as_ref(), Clone::clone);
     }
     fn flag(&mut self, param: &Param, slot: &mut Slot<bool>) {
-        self.note(param, slot, ToString::to_string);
+        self.note(param, slot.as_ref(), ToString::to_string);
     }
     fn choice(&mut self, param: &Param, _: &'static [Word], slot: &mut Slot<&'static str>) {
-        self.note(param, slot, |v| (*v).to_owned());
+        self.note(param, slot.as_ref(), |v| (*v).to_owned());
     }
     fn names(&mut self, param: &Param, _: usize, _: usize, slot: &mut Slot<Vec<Located<String>>>) {
-        self.note(param, slot, |v| list(v, |n| n.value.clone()));
+        self.note(param, slot.as_ref(), |v| list(v, |n| n.value.clone()));
     }
     fn section(&mut self, param: &Param, _: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor)) {
         self.inside(param.key, |lister| body(lister));

@@ -97,7 +97,8 @@ pub struct Project {
 impl Project {
     /// Reads a project file with everything that belongs to it. Whatever is wrong is in `diagnostics`.
     pub fn load(files: &dyn Files, path: &Path, choices: &Choices) -> Self {
-        let mut loader = Loader { files, sources: Sources::default(), diagnostics: Diagnostics::default(), chain: Vec::new(), file_missing: false };
+        let mut loader =
+            Loader { files, sources: Sources::default(), diagnostics: Diagnostics::default(), chain: Vec::new(), file_missing: false };
         let mut tree = loader.file(path, None);
         let root_span = Span::default();
         let variants = loader.variants(&mut tree, choices);
@@ -156,14 +157,17 @@ impl Loader<'_> {
         if self.chain.contains(&plain) {
             let span = from.unwrap_or_default();
             self.diagnostics.push(
-                Diagnostic::error("E0108", span, format!("`{shown}` extends itself")).label("leads back here").help("remove one `extends` of the circle"),
+                Diagnostic::error("E0108", span, format!("`{shown}` extends itself"))
+                    .label("leads back here")
+                    .help("remove one `extends` of the circle"),
             );
             return Table::default();
         }
         if self.chain.len() >= LONGEST_CHAIN {
             let span = from.unwrap_or_default();
             self.diagnostics.push(
-                Diagnostic::error("E0108", span, format!("more than {LONGEST_CHAIN} files extend one another")).help("join some of the files"),
+                Diagnostic::error("E0108", span, format!("more than {LONGEST_CHAIN} files extend one another"))
+                    .help("join some of the files"),
             );
             return Table::default();
         }
@@ -179,7 +183,9 @@ impl Loader<'_> {
         let mut tree = tree::parse(&text, source, &mut self.diagnostics);
         let Some(Entry { item, .. }) = tree.take("extends") else { return tree };
         let Item { value: Value::Text(base), span } = item else {
-            self.diagnostics.push(Diagnostic::error("E0206", item.span, "`extends` is the path of a file").help("write it as `extends = \"base.toml\"`"));
+            self.diagnostics.push(
+                Diagnostic::error("E0206", item.span, "`extends` is the path of a file").help("write it as `extends = \"base.toml\"`"),
+            );
             return tree;
         };
         self.chain.push(plain);
@@ -192,15 +198,23 @@ impl Loader<'_> {
 
     fn unreadable(&mut self, shown: &str, error: &FileError, from: Option<Span>) {
         let (code, message, help) = match error {
-            FileError::NotFound => ("E0101", format!("`{shown}` does not exist"), "check the path; `forcewright new --list` names examples to start from".to_owned()),
+            FileError::NotFound => (
+                "E0101",
+                format!("`{shown}` does not exist"),
+                "check the path; `forcewright new --list` names examples to start from".to_owned(),
+            ),
             FileError::NotAFile => ("E0104", format!("`{shown}` is not a file"), "name a project file, such as `design.toml`".to_owned()),
-            FileError::Unreadable(why) => ("E0101", format!("`{shown}` cannot be read: {why}"), "check that it is readable for you".to_owned()),
+            FileError::Unreadable(why) => {
+                ("E0101", format!("`{shown}` cannot be read: {why}"), "check that it is readable for you".to_owned())
+            }
             FileError::TooLarge(bytes) => (
                 "E0103",
                 format!("`{shown}` has {bytes} bytes; at most {LARGEST_BYTES} are accepted"),
                 "a project file has a few kilobytes; measured data belongs into CSV files".to_owned(),
             ),
-            FileError::NotUtf8(good) => ("E0102", format!("`{shown}` is not UTF-8 text: byte {} is not", good + 1), "save it as UTF-8".to_owned()),
+            FileError::NotUtf8(good) => {
+                ("E0102", format!("`{shown}` is not UTF-8 text: byte {} is not", good + 1), "save it as UTF-8".to_owned())
+            }
         };
         self.file_missing |= matches!(error, FileError::NotFound | FileError::NotAFile | FileError::Unreadable(_));
         let diagnostic = match from {
@@ -216,7 +230,8 @@ impl Loader<'_> {
             Some(Entry { item: Item { value: Value::Table(table), .. }, .. }) => table,
             Some(entry) => {
                 self.diagnostics.push(
-                    Diagnostic::error("E0206", entry.item.span, "`variants` is a table with a table per variant").help("write `[variants.thin]` and below it the differences"),
+                    Diagnostic::error("E0206", entry.item.span, "`variants` is a table with a table per variant")
+                        .help("write `[variants.thin]` and below it the differences"),
                 );
                 Table::default()
             }
@@ -230,7 +245,8 @@ impl Loader<'_> {
             match entry.item.value {
                 Value::Table(table) => tree.overlay(table),
                 _ => self.diagnostics.push(
-                    Diagnostic::error("E0206", entry.item.span, "a variant is a table").help("write the differences as keys, such as `design.thickness = \"0.85 mm\"`"),
+                    Diagnostic::error("E0206", entry.item.span, "a variant is a table")
+                        .help("write the differences as keys, such as `design.thickness = \"0.85 mm\"`"),
                 ),
             }
         }
@@ -250,7 +266,10 @@ impl Loader<'_> {
     fn set(&mut self, tree: &mut Table, setting: &str) {
         let source = self.sources.add("--set", setting);
         let whole = Span { source, start: 0, end: setting.len() };
-        let refuse = |message: &str| Diagnostic::error("E0111", whole, message).help("write `--set design.thickness=\"0.9 mm\"`, members by name: `design.beams.b1.bend=[1.2, -1.5]`");
+        let refuse = |message: &str| {
+            Diagnostic::error("E0111", whole, message)
+                .help("write `--set design.thickness=\"0.9 mm\"`, members by name: `design.beams.b1.bend=[1.2, -1.5]`")
+        };
         let Some((key, value)) = setting.split_once('=') else {
             return self.diagnostics.push(refuse("a setting is KEY=VALUE"));
         };

@@ -73,7 +73,11 @@ impl<'a> Reader<'a> {
             // A misspelt key is reported once, as unknown; calling it missing too would say the same twice.
             let misspelt = self.table.entries.iter().any(|e| closest(&e.key, [param.key]).is_some());
             if !misspelt {
-                let example = if param.dimension == Dimension::Ratio { String::new() } else { format!(", such as `{} = \"{}\"`", param.key, param.dimension.example()) };
+                let example = if param.dimension == Dimension::Ratio {
+                    String::new()
+                } else {
+                    format!(", such as `{} = \"{}\"`", param.key, param.dimension.example())
+                };
                 self.push(
                     Diagnostic::error("E0302", self.place, format!("`{}` is missing", param.key))
                         .label("from this table")
@@ -122,9 +126,13 @@ impl<'a> Reader<'a> {
                         .help(reserved.instead),
                 ),
                 Some(reserved) => self.diagnostics.push(
-                    Diagnostic::error("E0306", entry.key_span, format!("`{}` is part of the language but not of this version", reserved.key))
-                        .label("not available yet")
-                        .help(reserved.instead),
+                    Diagnostic::error(
+                        "E0306",
+                        entry.key_span,
+                        format!("`{}` is part of the language but not of this version", reserved.key),
+                    )
+                    .label("not available yet")
+                    .help(reserved.instead),
                 ),
                 None => self.unknown.push(Unknown { key: entry.key.clone(), span: entry.key_span, siblings: self.known.clone() }),
             }
@@ -158,7 +166,11 @@ fn quantity_of(param: &Param, item: &Item) -> Result<Quantity, Box<Diagnostic>> 
             return Err(Box::new(
                 Diagnostic::error("E0208", item.span, format!("`{}` needs a unit", param.key))
                     .label(format!("expected {}", dimension.name()))
-                    .help(format!("write it with its unit and in quotes: \"{value} {}\" ({})", default_unit(dimension), dimension.accepted())),
+                    .help(format!(
+                        "write it with its unit and in quotes: \"{value} {}\" ({})",
+                        default_unit(dimension),
+                        dimension.accepted()
+                    )),
             ));
         }
         _ => return Err(wrong_type(item, dimension.name(), &format!("a text such as \"{}\"", dimension.example()))),
@@ -177,15 +189,28 @@ fn quantity_error(error: &QuantityError, text: &str, span: Span, dimension: Dime
     let at = |code, message: String, label: String| Diagnostic::error(code, span, message).label(label);
     let shown = shorten(text);
     match error {
-        QuantityError::NotANumber => at("E0202", format!("`{shown}` does not start with a number"), format!("expected {}", dimension.name())).help(example),
-        QuantityError::NotFinite => at("E0205", format!("`{shown}` is not a finite number"), "not a number that can be computed with".to_owned()).help(example),
-        QuantityError::DecimalComma(point) => at("E0202", "decimal comma in a number".to_owned(), "a comma".to_owned()).help(format!("write \"{}\"", shorten(point))),
-        QuantityError::NoUnit => at("E0208", format!("`{shown}` has no unit"), format!("expected {}", dimension.name()))
-            .help(format!("write \"{} {}\" ({})", shown.trim(), default_unit(dimension), dimension.accepted())),
+        QuantityError::NotANumber => {
+            at("E0202", format!("`{shown}` does not start with a number"), format!("expected {}", dimension.name())).help(example)
+        }
+        QuantityError::NotFinite => {
+            at("E0205", format!("`{shown}` is not a finite number"), "not a number that can be computed with".to_owned()).help(example)
+        }
+        QuantityError::DecimalComma(point) => {
+            at("E0202", "decimal comma in a number".to_owned(), "a comma".to_owned()).help(format!("write \"{}\"", shorten(point)))
+        }
+        QuantityError::NoUnit => at("E0208", format!("`{shown}` has no unit"), format!("expected {}", dimension.name())).help(format!(
+            "write \"{} {}\" ({})",
+            shown.trim(),
+            default_unit(dimension),
+            dimension.accepted()
+        )),
         QuantityError::Unit(unit) => at("E0203", unit.to_string(), format!("expected {}", dimension.name())).help(example),
         QuantityError::WrongDimension(unit, found) => at(
             "E0201",
-            found.map_or_else(|| format!("`{unit}` is no unit of {}", dimension.name()), |f| format!("`{unit}` is the unit of {}, not of {}", f.name(), dimension.name())),
+            found.map_or_else(
+                || format!("`{unit}` is no unit of {}", dimension.name()),
+                |f| format!("`{unit}` is the unit of {}, not of {}", f.name(), dimension.name()),
+            ),
             format!("expected {}", dimension.name()),
         )
         .help(example),
@@ -228,7 +253,11 @@ fn list_of<'i>(item: &'i Item, wanted: &str, example: &str) -> Result<&'i [Item]
 }
 
 fn wrong_length(item: &Item, wanted: &str, found: usize) -> Box<Diagnostic> {
-    Box::new(Diagnostic::error("E0311", item.span, format!("expected {wanted}, found {found}")).label("wrong number of entries").help(format!("give {wanted}")))
+    Box::new(
+        Diagnostic::error("E0311", item.span, format!("expected {wanted}, found {found}"))
+            .label("wrong number of entries")
+            .help(format!("give {wanted}")),
+    )
 }
 
 impl Visitor for Reader<'_> {
@@ -275,7 +304,9 @@ impl Visitor for Reader<'_> {
                 let size = direction[0].abs().max(direction[1].abs());
                 if !(1e-6..=1e6).contains(&size) {
                     return Err(Box::new(
-                        Diagnostic::error("E0204", item.span, "a direction needs a length").label("out of range").help("write a vector such as [0, -1]; its length does not matter"),
+                        Diagnostic::error("E0204", item.span, "a direction needs a length")
+                            .label("out of range")
+                            .help("write a vector such as [0, -1]; its length does not matter"),
                     ));
                 }
                 Ok(direction)
@@ -365,8 +396,16 @@ impl Visitor for Reader<'_> {
         let found: Vec<(Located<String>, Table, Span)> = match (&entry.item.value, form) {
             (Value::Table(table), Form::Table) => self.table_members(table, param),
             (Value::List(items), Form::List) => self.list_members(items),
-            (_, Form::Table) => return self.push(*wrong_type(&entry.item, "a table with a key per member", &format!("`[… {}]` with `name = {{ … }}`", param.key))),
-            (_, Form::List) => return self.push(*wrong_type(&entry.item, "a list of tables", &format!("`[[… {}]]` with a `name` each", param.key))),
+            (_, Form::Table) => {
+                return self.push(*wrong_type(
+                    &entry.item,
+                    "a table with a key per member",
+                    &format!("`[… {}]` with `name = {{ … }}`", param.key),
+                ));
+            }
+            (_, Form::List) => {
+                return self.push(*wrong_type(&entry.item, "a list of tables", &format!("`[[… {}]]` with a `name` each", param.key)));
+            }
         };
         if found.len() > MOST_MEMBERS {
             return self.push(

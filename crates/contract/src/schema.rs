@@ -126,7 +126,8 @@ impl Visitor for Schema {
             Form::Table => json!({ "type": "object", "additionalProperties": member }),
             Form::List => {
                 if let Some(Value::Object(properties)) = member.get_mut("properties") {
-                    properties.insert("name".into(), json!({ "type": "string", "description": "Name, by which paths and reports call it." }));
+                    properties
+                        .insert("name".into(), json!({ "type": "string", "description": "Name, by which paths and reports call it." }));
                 }
                 // In variants, members of a list are written by name.
                 json!({ "type": "array", "items": member })
@@ -152,7 +153,8 @@ struct Listing {
 impl Listing {
     fn row(&mut self, param: &Param, takes: &str) {
         let range = range_text(param);
-        let default = param.default.map_or_else(|| if param.required { "required".to_owned() } else { String::new() }, |d| format!("`{d}`"));
+        let default =
+            param.default.map_or_else(|| if param.required { "required".to_owned() } else { String::new() }, |d| format!("`{d}`"));
         let doc = param.doc.replace('|', "\\|");
         let _ = writeln!(self.text, "| `{}{}` | {takes} | {range} | {default} | {doc} |", self.prefix, param.key);
     }

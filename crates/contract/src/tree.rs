@@ -2,8 +2,8 @@
 //! is understood, and keeps the places, so that an error points at the text that caused it wherever that text stands.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, SourceId, Span};
-use toml::de::{DeTable, DeValue};
 use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 /// Deepest nesting accepted; real files need five.
 const DEEPEST: usize = 32;
@@ -269,11 +269,7 @@ impl Converter<'_> {
     fn table(&mut self, table: DeTable<'_>) -> Table {
         let mut entries: Vec<Entry> = table
             .into_iter()
-            .map(|(key, value)| Entry {
-                key_span: self.span(key.span()),
-                key: key.into_inner().into_owned(),
-                item: self.item(value),
-            })
+            .map(|(key, value)| Entry { key_span: self.span(key.span()), key: key.into_inner().into_owned(), item: self.item(value) })
             .collect();
         // The parser sorts by name; people and messages follow the file.
         entries.sort_by_key(|e| e.key_span.start);
@@ -292,7 +288,8 @@ impl Converter<'_> {
             DeValue::Float(digits) => self.number(digits.as_str().parse().unwrap_or(f64::NAN), span),
             DeValue::Datetime(_) => {
                 self.diagnostics.push(
-                    Diagnostic::error("E0206", span, "a date has no place in a project file").help("write it as a quoted text, or as a comment"),
+                    Diagnostic::error("E0206", span, "a date has no place in a project file")
+                        .help("write it as a quoted text, or as a comment"),
                 );
                 Value::Flag(false)
             }
@@ -307,7 +304,9 @@ impl Converter<'_> {
             return Value::Number(value);
         }
         self.diagnostics.push(
-            Diagnostic::error("E0205", span, "this number is not finite").label("not a number that can be computed with").help("write a finite number"),
+            Diagnostic::error("E0205", span, "this number is not finite")
+                .label("not a number that can be computed with")
+                .help("write a finite number"),
         );
         // One error is enough: what reads the tree sees a harmless number.
         Value::Number(0.0)

@@ -72,7 +72,9 @@ impl Loaded {
             }
             _ => {
                 if !project.diagnostics.has_errors() {
-                    project.diagnostics.push(Diagnostic::placeless("E0509", "the project was not understood").help("please report this with the file"));
+                    project
+                        .diagnostics
+                        .push(Diagnostic::placeless("E0509", "the project was not understood").help("please report this with the file"));
                 }
                 Err(Refused { diagnostics: project.diagnostics, sources: project.sources, file_missing: project.file_missing })
             }
@@ -112,7 +114,11 @@ fn family_of(project: &mut Project) -> Option<&'static dyn Family> {
         // A file that could not be read, or not parsed, has been reported already.
         if !project.diagnostics.has_errors() {
             let message = "`mechanism` is missing";
-            project.diagnostics.push(Diagnostic::error("E0302", project.root, message).label("from this file").help(format!("add `mechanism = …`, one of {all}")));
+            project.diagnostics.push(
+                Diagnostic::error("E0302", project.root, message)
+                    .label("from this file")
+                    .help(format!("add `mechanism = …`, one of {all}")),
+            );
         }
         return None;
     };

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::{choices, diagnostic_json, refuse};
 use crate::{exit, output};
 
-pub fn run(matches: &ArgMatches) -> u8 {
+pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let json = matches.get_flag("json");
     let mut worst = exit::MET;
     let mut documents = Vec::new();
@@ -23,7 +23,8 @@ pub fn run(matches: &ArgMatches) -> u8 {
             match Loaded::from_file(&DiskFiles, file, &choice) {
                 Err(refused) => {
                     worst = worst.max(refuse(&refused, false));
-                    let list: Vec<_> = refused.diagnostics.in_file_order().into_iter().map(|d| diagnostic_json(d, &refused.sources)).collect();
+                    let list: Vec<_> =
+                        refused.diagnostics.in_file_order().into_iter().map(|d| diagnostic_json(d, &refused.sources)).collect();
                     documents.push(json!({ "file": name.to_string(), "variant": choice.variant, "ok": false, "diagnostics": list }));
                     // The variants of a broken file repeat its errors.
                     break;
@@ -39,7 +40,9 @@ pub fn run(matches: &ArgMatches) -> u8 {
                         output::print(&format!("{what}: ok\n"));
                     }
                     if index == 1 && choice.variant.is_none() {
-                        selection.extend(loaded.project.variants.iter().map(|v| forcewright::Choices { variant: Some(v.clone()), ..choice.clone() }));
+                        selection.extend(
+                            loaded.project.variants.iter().map(|v| forcewright::Choices { variant: Some(v.clone()), ..choice.clone() }),
+                        );
                     }
                 }
             }

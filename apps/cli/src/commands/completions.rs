@@ -5,7 +5,7 @@ use clap_complete::{Shell, generate};
 
 use crate::{args, exit, output};
 
-pub fn run(matches: &ArgMatches) -> u8 {
+pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let Some(shell) = matches.get_one::<Shell>("shell") else { return exit::USAGE };
     let mut script = Vec::new();
     generate(*shell, &mut args::command(), "forcewright", &mut script);

@@ -7,7 +7,7 @@ use forcewright::base::text::closest;
 
 use crate::{exit, output};
 
-pub fn run(matches: &ArgMatches) -> u8 {
+pub(crate) fn run(matches: &ArgMatches) -> u8 {
     if matches.get_flag("all") {
         let mut out = String::from("# Codes of checks, errors and warnings\n");
         for e in forcewright::explanations().chain(output::CODES) {
@@ -23,7 +23,10 @@ pub fn run(matches: &ArgMatches) -> u8 {
         return exit::MET;
     }
     let near = closest(&wanted, forcewright::explanations().chain(output::CODES).map(|e| e.code));
-    let help = near.map_or_else(|| "`forcewright explain --all` prints every code".to_owned(), |n| format!("did you mean {n}? `forcewright explain --all` prints every code"));
+    let help = near.map_or_else(
+        || "`forcewright explain --all` prints every code".to_owned(),
+        |n| format!("did you mean {n}? `forcewright explain --all` prints every code"),
+    );
     output::narrate(&format!("error[E0123]: there is no code `{}`\n  = help: {help}\n", code.chars().take(40).collect::<String>()));
     exit::USAGE
 }

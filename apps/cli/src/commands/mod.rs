@@ -1,12 +1,12 @@
 //! One file per command.
 
-pub mod check;
-pub mod completions;
-pub mod explain;
-pub mod new;
-pub mod reproduce;
-pub mod schema;
-pub mod solve;
+pub(crate) mod check;
+pub(crate) mod completions;
+pub(crate) mod explain;
+pub(crate) mod new;
+pub(crate) mod reproduce;
+pub(crate) mod schema;
+pub(crate) mod solve;
 
 use clap::ArgMatches;
 use forcewright::{Choices, Refused};
@@ -15,7 +15,7 @@ use serde_json::json;
 use crate::{exit, output};
 
 /// What `forcewright` prints without a command: where to start.
-pub fn welcome() -> u8 {
+pub(crate) fn welcome() -> u8 {
     output::print(
         "forcewright: passive force-shaping mechanisms of robots\n\n\
          Start here:\n  \
@@ -49,7 +49,10 @@ fn refuse(refused: &Refused, json: bool) -> u8 {
     if refused.file_missing { exit::IO } else { exit::USAGE }
 }
 
-fn diagnostic_json(diagnostic: &forcewright::base::diagnostics::Diagnostic, sources: &forcewright::base::diagnostics::Sources) -> serde_json::Value {
+fn diagnostic_json(
+    diagnostic: &forcewright::base::diagnostics::Diagnostic,
+    sources: &forcewright::base::diagnostics::Sources,
+) -> serde_json::Value {
     use forcewright::base::diagnostics::Severity;
     let severity = match diagnostic.severity {
         Severity::Error => "error",

@@ -9,7 +9,7 @@ use forcewright::gallery::{self, EXAMPLES, Example};
 use crate::table::{Align, columns};
 use crate::{exit, output};
 
-pub fn run(matches: &ArgMatches) -> u8 {
+pub(crate) fn run(matches: &ArgMatches) -> u8 {
     if matches.get_flag("list") {
         let rows: Vec<Vec<String>> = EXAMPLES.iter().map(|e| vec![e.name.to_owned(), e.title().to_owned()]).collect();
         output::print(&columns(&rows, &[Align::Left, Align::Left]));
@@ -19,7 +19,10 @@ pub fn run(matches: &ArgMatches) -> u8 {
     let Some(example) = gallery::find(name) else {
         let short = EXAMPLES.iter().filter_map(|e| e.name.rsplit('/').next());
         let near = closest(name, EXAMPLES.iter().map(|e| e.name).chain(short));
-        let help = near.map_or_else(|| "`forcewright new --list` names them".to_owned(), |n| format!("did you mean `{n}`? `forcewright new --list` names them all"));
+        let help = near.map_or_else(
+            || "`forcewright new --list` names them".to_owned(),
+            |n| format!("did you mean `{n}`? `forcewright new --list` names them all"),
+        );
         output::narrate(&format!("error[E0121]: there is no example `{name}`\n  = help: {help}\n"));
         return exit::USAGE;
     };
@@ -39,7 +42,10 @@ pub fn run(matches: &ArgMatches) -> u8 {
         // A base that is already there, unchanged, is what was asked for.
         let same = std::fs::read_to_string(&path).is_ok_and(|text| text == file.text);
         if path.exists() && !force && !(same && index > 0) {
-            output::narrate(&format!("error[E0122]: `{}` exists already\n  = help: choose another folder with --dir, or overwrite it with --force\n", path.display()));
+            output::narrate(&format!(
+                "error[E0122]: `{}` exists already\n  = help: choose another folder with --dir, or overwrite it with --force\n",
+                path.display()
+            ));
             return exit::IO;
         }
         files.push((path, file.text));

@@ -11,7 +11,7 @@ use crate::progress::Progress;
 use crate::table::{Align, columns};
 use crate::{exit, output};
 
-pub fn run(matches: &ArgMatches) -> u8 {
+pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let wanted = matches.get_one::<String>("paper");
     let format = matches.get_one::<String>("format").map_or("text", String::as_str);
     let mut all_agree = true;
@@ -55,8 +55,7 @@ fn text(reproduction: &Reproduction, rows: &[ReproductionRow]) -> String {
         table.push(vec![mark, row.quantity.clone(), row.unit.clone(), paper, ours, difference, row.place.clone()]);
     }
     let mut out = format!("{}\n\n", reproduction.title);
-    use Align::{Left, Right};
-    out.push_str(&columns(&table, &[Left, Left, Left, Right, Right, Right, Left]));
+    out.push_str(&columns(&table, &[Align::Left, Align::Left, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]));
     out.push_str("\nWhy they differ:\n");
     for row in rows.iter().filter(|r| !r.why.is_empty()) {
         let _ = writeln!(out, "- {}: {}", row.quantity, row.why);
@@ -68,7 +67,8 @@ fn text(reproduction: &Reproduction, rows: &[ReproductionRow]) -> String {
 }
 
 fn markdown(rows: &[ReproductionRow]) -> String {
-    let mut out = String::from("| quantity | source | paper | computed | difference | | why |\n| --- | --- | ---: | ---: | ---: | --- | --- |\n");
+    let mut out =
+        String::from("| quantity | source | paper | computed | difference | | why |\n| --- | --- | ---: | ---: | ---: | --- | --- |\n");
     for row in rows {
         let [paper, ours, difference, mark] = cells(row);
         let status = match mark.as_str() {
@@ -77,7 +77,13 @@ fn markdown(rows: &[ReproductionRow]) -> String {
             _ => "🧪",
         };
         let unit = &row.unit;
-        let _ = writeln!(out, "| {} / {unit} | {} | {paper} | {ours} | {difference} | {status} | {} |", row.quantity, row.place, row.why.replace('|', "\\|"));
+        let _ = writeln!(
+            out,
+            "| {} / {unit} | {} | {paper} | {ours} | {difference} | {status} | {} |",
+            row.quantity,
+            row.place,
+            row.why.replace('|', "\\|")
+        );
     }
     out
 }

@@ -4,7 +4,7 @@ use clap::ArgMatches;
 
 use crate::{exit, output};
 
-pub fn run(matches: &ArgMatches) -> u8 {
+pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let id = matches.get_one::<String>("mechanism").map(String::as_str);
     let family = match (id, forcewright::FAMILIES) {
         (Some(id), _) => forcewright::family(id),

@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use crate::table::{Align, columns};
 use crate::{exit, output};
 
-pub fn run(matches: &ArgMatches) -> u8 {
+pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let Some(file) = matches.get_one::<PathBuf>("file") else { return exit::USAGE };
     let as_json = matches.get_flag("json");
     let out = matches.get_one::<PathBuf>("out");
@@ -43,7 +43,11 @@ pub fn run(matches: &ArgMatches) -> u8 {
         output::print(&summary(&report, output::colour_on_stdout()));
     }
     if let Some(folder) = out {
-        let mut files = vec![("report.html".to_owned(), html::page(&report)), ("result.json".to_owned(), format!("{document:#}\n")), ("curves.csv".to_owned(), csv::curves(&report.outcome))];
+        let mut files = vec![
+            ("report.html".to_owned(), html::page(&report)),
+            ("result.json".to_owned(), format!("{document:#}\n")),
+            ("curves.csv".to_owned(), csv::curves(&report.outcome)),
+        ];
         files.extend(report.figures.iter().map(|f| (format!("{}.svg", f.id), svg::standalone(f))));
         for (name, text) in &files {
             let path = folder.join(name);
@@ -107,7 +111,12 @@ fn summary(report: &Report, colour: bool) -> String {
         }
     }
     out.push('\n');
-    let rows: Vec<Vec<String>> = outcome.metrics.iter().filter(|m| m.key).map(|m| vec![m.name.to_owned(), format_si(m.value, &m.display, 5), m.doc.to_owned()]).collect();
+    let rows: Vec<Vec<String>> = outcome
+        .metrics
+        .iter()
+        .filter(|m| m.key)
+        .map(|m| vec![m.name.to_owned(), format_si(m.value, &m.display, 5), m.doc.to_owned()])
+        .collect();
     out.push_str(&columns(&rows, &[Align::Left, Align::Right, Align::Left]));
     if !outcome.warnings.is_empty() {
         out.push('\n');
@@ -116,7 +125,8 @@ fn summary(report: &Report, colour: bool) -> String {
         }
     }
     out.push('\n');
-    let accuracy = outcome.error_estimate.map_or_else(String::new, |e| format!("; estimated error {} of the largest force", format_number(e, 2)));
+    let accuracy =
+        outcome.error_estimate.map_or_else(String::new, |e| format!("; estimated error {} of the largest force", format_number(e, 2)));
     let _ = writeln!(out, "{}: {}{accuracy}", outcome.status.kind.word(), outcome.status.message);
     if let Some(advice) = &outcome.status.advice {
         let _ = writeln!(out, "  help: {advice}");
@@ -152,5 +162,7 @@ fn requirement_table(checks: &[Check], colour: bool) -> String {
     if !colour {
         return text;
     }
-    text.replace("✓ met", "\u{1b}[32m✓ met\u{1b}[0m").replace("✗ missed", "\u{1b}[31m✗ missed\u{1b}[0m").replace("? not assessed", "\u{1b}[33m? not assessed\u{1b}[0m")
+    text.replace("✓ met", "\u{1b}[32m✓ met\u{1b}[0m")
+        .replace("✗ missed", "\u{1b}[31m✗ missed\u{1b}[0m")
+        .replace("? not assessed", "\u{1b}[33m? not assessed\u{1b}[0m")
 }

@@ -6,7 +6,7 @@ use forcewright_contract::family::Progress;
 use forcewright_model as model;
 
 use crate::design::Design;
-use crate::force_curve::{ForceCurve, Interval};
+use crate::force_curve::{Extrema, ForceCurve, Interval};
 use crate::metrics::METRICS;
 
 /// Stations of the first attempt, and the most that are tried to keep the interpolation between them below its share of the error.
@@ -14,7 +14,7 @@ const STATIONS: [usize; 4] = [128, 256, 512, 1024];
 /// Interpolation error accepted, relative to the largest force.
 const INTERPOLATION: f64 = 1e-7;
 /// The paper's operational range starts where the force reaches this fraction of its end value (section II).
-pub const RANGE_FRACTION: f64 = 0.95;
+pub(crate) const RANGE_FRACTION: f64 = 0.95;
 
 /// What a design does. SI; forces and energies are those of the whole layout.
 #[derive(Clone, Debug)]
@@ -66,7 +66,8 @@ impl Behaviour {
     fn from_path(path: Path, copies: f64) -> Self {
         let whole = matches!(path.status, Status::Complete | Status::NotResolved { .. });
         let pick = |f: fn(&Point) -> f64, scale: f64| path.points.iter().map(|p| scale * f(p)).collect::<Vec<_>>();
-        let curve = (path.points.len() >= 2).then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)));
+        let curve = (path.points.len() >= 2)
+            .then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)));
         let largest = path.points.iter().map(|p| copies * p.force.abs()).fold(0.0, f64::max);
         let interpolation_error = curve.as_ref().map_or(0.0, |c| if largest > 0.0 { c.error_n() / largest } else { 0.0 });
         Self { path, curve, copies, whole, interpolation_error }
@@ -114,7 +115,7 @@ impl Behaviour {
     /// again, if the path reaches it.
     pub fn jump(&self) -> Option<(f64, Option<f64>)> {
         let curve = self.curve.as_ref()?;
-        let (from, level) = curve.extrema().0?;
+        let (from, level) = curve.extrema().max?;
         let slack = 1e-6 * curve.end();
         Some((from, curve.crossings(level).into_iter().find(|x| *x > from + slack)))
     }
@@ -162,7 +163,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m.set("mass", design.density_kg_per_m3.map(|density| density * design.copies() * volume_m3(design)));
     let Some(curve) = &behaviour.curve else { return m };
     m.set("stiffness_initial", behaviour.path.points.first().map(|p| behaviour.copies * p.stiffness));
-    let (max, min) = curve.extrema();
+    let Extrema { max, min } = curve.extrema();
     m.set("force_local_max", max.map(|(_, f)| f));
     m.set("force_local_max_at", max.map(|(x, _)| x));
     m.set("force_local_min", min.map(|(_, f)| f));
@@ -186,7 +187,13 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m.set("flat_start", flat.map(|i| i.start));
     m.set("flat_end", flat.map(|i| i.end));
     m.set("flat_ratio", flat.map(|i| i.length() / travel));
-    m.set("flat_force", flat.map(|i| { let (hi, lo) = curve.extent(i); f64::midpoint(hi, lo) }));
+    m.set(
+        "flat_force",
+        flat.map(|i| {
+            let (hi, lo) = curve.extent(i);
+            f64::midpoint(hi, lo)
+        }),
+    );
     m.usable = flat;
     if let Some((band, Some(nominal))) = force {
         let within = curve.longest_within(nominal * (1.0 - band), nominal * (1.0 + band));
@@ -216,7 +223,7 @@ fn volume_m3(design: &Design) -> f64 {
 }
 
 /// The unit in which people are shown a metric.
-pub fn display_unit(design: &Design, index: usize) -> Unit {
+pub(crate) fn display_unit(design: &Design, index: usize) -> Unit {
     use forcewright_base::units::Dimension as D;
     let Some(info) = METRICS.get(index) else { return Unit::si(D::Ratio) };
     let limit = design.requirements.iter().flat_map(|r| &r.limits).find(|(i, ..)| *i == index).map(|(.., unit)| unit.clone());
@@ -234,19 +241,26 @@ pub fn display_unit(design: &Design, index: usize) -> Unit {
 }
 
 /// The metrics as outputs see them.
-pub fn metrics(design: &Design, measured: &Measured) -> Vec<model::Metric> {
+pub(crate) fn metrics(design: &Design, measured: &Measured) -> Vec<model::Metric> {
     METRICS
         .iter()
         .enumerate()
         .filter_map(|(index, info)| {
             let value = measured.value(index)?;
-            Some(model::Metric { name: info.name, value, dimension: info.dimension, display: display_unit(design, index), doc: info.doc, key: info.key })
+            Some(model::Metric {
+                name: info.name,
+                value,
+                dimension: info.dimension,
+                display: display_unit(design, index),
+                doc: info.doc,
+                key: info.key,
+            })
         })
         .collect()
 }
 
 /// How the solve ended, in words.
-pub fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
+pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
     use model::StatusKind as K;
     let show = |x: f64| forcewright_base::units::format_si(x, &design.units.displacement, 6);
     let travel = show(design.travel_m);
@@ -274,9 +288,11 @@ pub fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
             format!("the force in beam `{}` is undetermined at rest: inextensible beams are over-constrained here", beam(b)),
             Some("use `model.beam = \"reissner\"`, or bend the beam a little".to_owned()),
         ),
-        Status::Mechanism { node: n } => {
-            (K::NotConverged, format!("node `{}` can move at rest without a force", node(n)), Some("add a support, or make a hinge rigid".to_owned()))
-        }
+        Status::Mechanism { node: n } => (
+            K::NotConverged,
+            format!("node `{}` can move at rest without a force", node(n)),
+            Some("add a support, or make a hinge rigid".to_owned()),
+        ),
         Status::IterationLimit { control, limit } => (
             K::NotConverged,
             format!("stopped at Δ = {} after {limit} Newton iterations", show(control)),

@@ -8,7 +8,7 @@ use crate::design::{Design, Requirements, StressLimit};
 use crate::metrics::METRICS;
 
 /// Every requirement of the project, in the order of the language.
-pub fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Check> {
+pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Check> {
     let Some(requirements) = &design.requirements else { return Vec::new() };
     let mut all = Vec::new();
     let context = Context { design, behaviour, measured, requirements };
@@ -83,11 +83,10 @@ fn percent() -> Unit {
     Unit::parse("%").unwrap_or_else(|_| Unit::si(Dimension::Ratio))
 }
 
-impl Context<'_> {
-    fn unreached(&self) -> String {
-        "the path ends before the full travel; see the status".to_owned()
-    }
+/// Why a check over the whole travel has no value.
+const UNREACHED: &str = "the path ends before the full travel; see the status";
 
+impl Context<'_> {
     /// COMP001: the band needed over the best window of the required stroke.
     fn force(&self) -> Option<Check> {
         let (band, nominal) = self.requirements.force?;
@@ -114,7 +113,8 @@ impl Context<'_> {
             }
             _ => "ask for a shorter `travel` or a wider `band`, or change the shape".to_owned(),
         };
-        let missing = if self.behaviour.whole { format!("the required stroke of {stroke} is longer than the travel") } else { self.unreached() };
+        let missing =
+            if self.behaviour.whole { format!("the required stroke of {stroke} is longer than the travel") } else { UNREACHED.to_owned() };
         let comparison = Comparison {
             code: "COMP001",
             name: "force".to_owned(),
@@ -150,8 +150,16 @@ impl Context<'_> {
             display: self.design.units.displacement.clone(),
             scale: wanted,
             basis: "longest displacement interval on which the force stays inside the band".to_owned(),
-            fix: format!("the band holds over {}; a wider `band`, a longer `load.travel` or another shape is needed for {}", show(usable.unwrap_or(0.0)), show(wanted)),
-            missing: if self.requirements.force.is_none() { "`requirements.force.band` is not given".to_owned() } else { self.unreached() },
+            fix: format!(
+                "the band holds over {}; a wider `band`, a longer `load.travel` or another shape is needed for {}",
+                show(usable.unwrap_or(0.0)),
+                show(wanted)
+            ),
+            missing: if self.requirements.force.is_none() {
+                "`requirements.force.band` is not given".to_owned()
+            } else {
+                UNREACHED.to_owned()
+            },
         };
         Some(comparison.judge())
     }
@@ -165,10 +173,15 @@ impl Context<'_> {
             let beam = self.design.beam_names.get(s.beam).map_or("?", String::as_str);
             format!(" (beam {beam}, u = {}, Δ = {})", format_number(s.peak.u, 3), show(s.at_m))
         });
-        let until = self.measured.get("travel_at_allowable_stress").map_or_else(String::new, |x| format!("keep `load.travel` below {}, or ", show(x)));
+        let until = self
+            .measured
+            .get("travel_at_allowable_stress")
+            .map_or_else(String::new, |x| format!("keep `load.travel` below {}, or ", show(x)));
         let ratio = found.zip(self.design.allowable_pa()).map_or(1.0, |(s, allowed)| s.peak.stress_pa / allowed);
         let basis = match wanted {
-            StressLimit::SafetyFactor(factor) => format!("yield stress over {}; Lan, Wang & Chen 2010, eq. (5) and constraint (iv)", format_number(factor, 4)),
+            StressLimit::SafetyFactor(factor) => {
+                format!("yield stress over {}; Lan, Wang & Chen 2010, eq. (5) and constraint (iv)", format_number(factor, 4))
+            }
             StressLimit::Stress(_) => "stress given in the requirements; Lan, Wang & Chen 2010, eq. (5)".to_owned(),
         };
         let comparison = Comparison {
@@ -182,8 +195,16 @@ impl Context<'_> {
             display: self.design.units.stress.clone(),
             scale: 1.0,
             basis,
-            fix: format!("{until}make the beams thinner: stress follows `design.thickness` (× {}), and `depth` × {} keeps the force", format_number(1.0 / ratio, 3), format_number(ratio * ratio * ratio, 3)),
-            missing: if self.design.yield_pa.is_none() { "the yield stress is not known; give `material.yield_stress`".to_owned() } else { self.unreached() },
+            fix: format!(
+                "{until}make the beams thinner: stress follows `design.thickness` (× {}), and `depth` × {} keeps the force",
+                format_number(1.0 / ratio, 3),
+                format_number(ratio * ratio * ratio, 3)
+            ),
+            missing: if self.design.yield_pa.is_none() {
+                "the yield stress is not known; give `material.yield_stress`".to_owned()
+            } else {
+                UNREACHED.to_owned()
+            },
         };
         Some(comparison.judge())
     }
@@ -191,7 +212,8 @@ impl Context<'_> {
     /// COMP004 and COMP005: slopes of the force.
     fn stiffness(&self) -> Vec<Check> {
         let scale = self.measured.get("stiffness_initial").map_or(1.0, f64::abs);
-        let slope = |code, name: &str, title: String, value, limit, sense, fix: String| Comparison {
+        let slope = |code, name: &str, title: String, value, limit, sense, fix: String| {
+            Comparison {
             code,
             name: name.to_owned(),
             title,
@@ -203,7 +225,8 @@ impl Context<'_> {
             scale,
             basis: "dF/dΔ from the tangent of the equilibrium equations; where the limit is zero, the margin is relative to the initial stiffness".to_owned(),
             fix,
-            missing: self.unreached(),
+            missing: UNREACHED.to_owned(),
+        }
         };
         let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
         let at = self.measured.stiffness.map_or_else(String::new, |(_, x)| format!(" (Δ = {})", show(x)));
@@ -226,8 +249,22 @@ impl Context<'_> {
             .judge(),
         ];
         if let Some(limit) = self.requirements.stiffness_max {
-            let largest = self.behaviour.whole.then(|| self.behaviour.path.points.iter().map(|p| self.behaviour.copies * p.stiffness).fold(f64::NEG_INFINITY, f64::max));
-            all.push(slope("COMP005", "stiffness_max", "Largest stiffness".to_owned(), largest, limit, Sense::AtMost, "change the shape, or allow it".to_owned()).judge());
+            let largest = self
+                .behaviour
+                .whole
+                .then(|| self.behaviour.path.points.iter().map(|p| self.behaviour.copies * p.stiffness).fold(f64::NEG_INFINITY, f64::max));
+            all.push(
+                slope(
+                    "COMP005",
+                    "stiffness_max",
+                    "Largest stiffness".to_owned(),
+                    largest,
+                    limit,
+                    Sense::AtMost,
+                    "change the shape, or allow it".to_owned(),
+                )
+                .judge(),
+            );
         }
         all
     }

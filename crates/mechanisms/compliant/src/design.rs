@@ -126,16 +126,16 @@ fn unit_or(slot: Option<&Quantity>, symbol: &str, dimension: Dimension) -> Unit 
     slot.map(|q| q.unit.clone()).or_else(|| Unit::parse(symbol).ok()).unwrap_or_else(|| Unit::si(dimension))
 }
 
-fn quantity(slot: &Slot<Quantity>) -> Option<&Quantity> {
-    slot.as_ref().map(|l| &l.value)
+fn quantity(slot: Option<&Located<Quantity>>) -> Option<&Quantity> {
+    slot.map(|l| &l.value)
 }
 
-fn si(slot: &Slot<Quantity>) -> Option<f64> {
+fn si(slot: Option<&Located<Quantity>>) -> Option<f64> {
     quantity(slot).map(|q| q.si)
 }
 
 /// Reads a design from what was typed. Everything wrong goes into `diagnostics`.
-pub fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
+pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
     let material_origin = fill_material(&mut spec.material.body, diagnostics);
     let place = spec.design.present.as_ref().map(|p| p.span).unwrap_or_default();
     if spec.model.joints.as_ref().is_some_and(|j| j.value == "overlap") {
@@ -169,12 +169,12 @@ pub fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design>
         beam_names: spec.design.beams.iter().map(|b| b.name.value.clone()).collect(),
         mirror,
         direction,
-        travel_m: si(&spec.load.travel)?,
-        yield_pa: si(&spec.material.yield_stress),
-        density_kg_per_m3: si(&spec.material.density),
+        travel_m: si(spec.load.travel.as_ref())?,
+        yield_pa: si(spec.material.yield_stress.as_ref()),
+        density_kg_per_m3: si(spec.material.density.as_ref()),
         theory: theory_of(spec),
         // `[model]` may be absent as a whole: then the defaults of its description hold.
-        accuracy: si(&spec.model.accuracy).unwrap_or(1e-8),
+        accuracy: si(spec.model.accuracy.as_ref()).unwrap_or(1e-8),
         requirements,
         units,
         material_origin,
@@ -189,8 +189,8 @@ fn theory_of(spec: &Spec) -> Theory {
 }
 
 fn display_units(spec: &Spec) -> DisplayUnits {
-    let displacement = unit_or(quantity(&spec.load.travel), "mm", Dimension::Length);
-    let force = unit_or(quantity(&spec.requirements.force.nominal), "N", Dimension::Force);
+    let displacement = unit_or(quantity(spec.load.travel.as_ref()), "mm", Dimension::Length);
+    let force = unit_or(quantity(spec.requirements.force.nominal.as_ref()), "N", Dimension::Force);
     let typed = spec.requirements.stiffness.min.as_ref().filter(|s| s.origin == Origin::File).map(|s| &s.value);
     let slope = format!("{}/{}", force.symbol(), displacement.symbol());
     let first_node = spec.design.nodes.iter().find_map(|n| n.value.at.as_ref()).map(|at| &at.value[0]);
@@ -210,22 +210,27 @@ fn fill_material(material: &mut spec::Material, diagnostics: &mut Diagnostics) -
     if let Some(entry) = &material.catalogue {
         let span = entry.span;
         let Some(found) = materials::find(&entry.value) else {
-            let near = closest(&entry.value, materials::catalogue().iter().flat_map(|m| std::iter::once(m.name.as_str()).chain(m.aliases.iter().map(String::as_str))));
-            let all = materials::names().collect::<Vec<_>>().join(", ");
-            diagnostics.push(
-                Diagnostic::error("E0308", span, "no such material in the catalogue")
-                    .label("not known")
-                    .help(near.map_or_else(|| format!("the catalogue has {all}"), |n| format!("did you mean \"{n}\"? The catalogue has {all}"))),
+            let near = closest(
+                &entry.value,
+                materials::catalogue().iter().flat_map(|m| std::iter::once(m.name.as_str()).chain(m.aliases.iter().map(String::as_str))),
             );
+            let all = materials::names().collect::<Vec<_>>().join(", ");
+            diagnostics.push(Diagnostic::error("E0308", span, "no such material in the catalogue").label("not known").help(
+                near.map_or_else(|| format!("the catalogue has {all}"), |n| format!("did you mean \"{n}\"? The catalogue has {all}")),
+            ));
             // What is missing for want of the entry need not be reported as well.
             return origin;
         };
-        let mut fill = |slot: &mut Slot<Quantity>, property: Option<&Property>, symbol: &str| {
+        let fill = |slot: &mut Slot<Quantity>, property: Option<&Property>, symbol: &str| {
             if let (None, Some(property)) = (&slot, property)
                 && let Ok(unit) = Unit::parse(symbol)
             {
                 let value = Quantity { si: property.value, unit, tolerance: None };
-                *slot = Some(Located { value, span, origin: Origin::Catalogue(format!("{}, {} ({})", found.name, property.kind, property.source)) });
+                *slot = Some(Located {
+                    value,
+                    span,
+                    origin: Origin::Catalogue(format!("{}, {} ({})", found.name, property.kind, property.source)),
+                });
             }
         };
         fill(&mut material.young_modulus, found.young_modulus_pa.as_ref(), "GPa");
@@ -243,7 +248,10 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
     let stress = match (&requirements.stress.safety_factor, &requirements.stress.max) {
         (Some(factor), Some(max)) => {
             diagnostics.push(
-                Diagnostic::error("E0305", max.span, "`safety_factor` and `max` exclude each other").label("the second of two").related(factor.span, "the first").help("keep one"),
+                Diagnostic::error("E0305", max.span, "`safety_factor` and `max` exclude each other")
+                    .label("the second of two")
+                    .related(factor.span, "the first")
+                    .help("keep one"),
             );
             None
         }
@@ -253,15 +261,21 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
     };
     if let Some(section) = requirements.stress.present.as_ref().filter(|_| stress.is_none() && requirements.stress.max.is_none()) {
         diagnostics.push(
-            Diagnostic::error("E0302", section.span, "`stress` says nothing").label("from this table").help("give `safety_factor = 1.5` or `max = \"50 MPa\"`"),
+            Diagnostic::error("E0302", section.span, "`stress` says nothing")
+                .label("from this table")
+                .help("give `safety_factor = 1.5` or `max = \"50 MPa\"`"),
         );
     }
     let mut limits = Vec::new();
     for (index, bounds) in requirements.limits.bounds.iter().enumerate() {
         if let Some(section) = &bounds.present {
-            let (min, max) = (quantity(&bounds.min), quantity(&bounds.max));
+            let (min, max) = (quantity(bounds.min.as_ref()), quantity(bounds.max.as_ref()));
             let Some(unit) = min.or(max).map(|q| q.unit.clone()) else {
-                diagnostics.push(Diagnostic::error("E0302", section.span, "this limit says nothing").label("from this table").help("give `min` or `max`"));
+                diagnostics.push(
+                    Diagnostic::error("E0302", section.span, "this limit says nothing")
+                        .label("from this table")
+                        .help("give `min` or `max`"),
+                );
                 continue;
             };
             limits.push((index, min.map(|q| q.si), max.map(|q| q.si), unit));
@@ -269,11 +283,11 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
     }
     debug_assert_eq!(requirements.limits.bounds.len(), METRICS.len());
     Some(Requirements {
-        force: si(&requirements.force.band).map(|band| (band, si(&requirements.force.nominal))),
-        travel_m: si(&requirements.travel),
+        force: si(requirements.force.band.as_ref()).map(|band| (band, si(requirements.force.nominal.as_ref()))),
+        travel_m: si(requirements.travel.as_ref()),
         stress,
-        stiffness_min: si(&requirements.stiffness.min).unwrap_or(0.0),
-        stiffness_max: si(&requirements.stiffness.max),
+        stiffness_min: si(requirements.stiffness.min.as_ref()).unwrap_or(0.0),
+        stiffness_max: si(requirements.stiffness.max.as_ref()),
         limits,
     })
 }
@@ -310,8 +324,13 @@ impl Builder<'_> {
         let found = nodes.iter().position(|n| n.name.value == name);
         if found.is_none() {
             let names = || nodes.iter().map(|n| n.name.value.as_str());
-            let help = closest(name, names()).map_or_else(|| format!("the design has {}", names().collect::<Vec<_>>().join(", ")), |near| format!("did you mean `{near}`?"));
-            self.error(Diagnostic::error("E0304", span, format!("there is no node `{name}`")).label("not defined in `design.nodes`").help(help));
+            let help = closest(name, names()).map_or_else(
+                || format!("the design has {}", names().collect::<Vec<_>>().join(", ")),
+                |near| format!("did you mean `{near}`?"),
+            );
+            self.error(
+                Diagnostic::error("E0304", span, format!("there is no node `{name}`")).label("not defined in `design.nodes`").help(help),
+            );
         }
         found
     }
@@ -328,7 +347,11 @@ impl Builder<'_> {
         let positions = self.positions(&drawn)?;
         let beams: Vec<Option<Beam>> = drawn.iter().map(|d| self.beam(d, &positions, section)).collect();
         let beams = beams.into_iter().collect::<Option<Vec<_>>>()?;
-        let nodes = positions.iter().zip(supports).map(|(at, support)| Some(Node { position_m: *at, support: support? })).collect::<Option<Vec<_>>>()?;
+        let nodes = positions
+            .iter()
+            .zip(supports)
+            .map(|(at, support)| Some(Node { position_m: *at, support: support? }))
+            .collect::<Option<Vec<_>>>()?;
         Some((Network { nodes, beams, drive: Drive::Displacement { node: load_node?, direction } }, direction))
     }
 
@@ -341,14 +364,19 @@ impl Builder<'_> {
         let (start, end) = (from?, to?);
         if start == end {
             self.error(
-                Diagnostic::error("E0502", ends.span, format!("beam `{}` starts and ends at the same node", member.name.value)).label("the same twice").help("name two different nodes"),
+                Diagnostic::error("E0502", ends.span, format!("beam `{}` starts and ends at the same node", member.name.value))
+                    .label("the same twice")
+                    .help("name two different nodes"),
             );
             return None;
         }
         for hinge in beam.hinged.iter().flat_map(|h| &h.value) {
             let node = self.node(&hinge.value, hinge.span)?;
             if node != start && node != end {
-                self.error(Diagnostic::error("E0304", hinge.span, format!("beam `{}` does not end at `{}`", member.name.value, hinge.value)).help("name one of its two nodes"));
+                self.error(
+                    Diagnostic::error("E0304", hinge.span, format!("beam `{}` does not end at `{}`", member.name.value, hinge.value))
+                        .help("name one of its two nodes"),
+                );
             }
         }
         Some(Drawn { member, start, end, form: form? })
@@ -384,17 +412,28 @@ impl Builder<'_> {
                 }
                 let Some(angle) = &beam.angle else { return Some(ShapeForm::Bend(Vec::new())) };
                 let Some(length) = &beam.length else {
-                    self.error(Diagnostic::error("E0302", angle.span, "`angle` needs `length`").label("angle without length").help("add the arc length, such as `length = \"34 mm\"`"));
+                    self.error(
+                        Diagnostic::error("E0302", angle.span, "`angle` needs `length`")
+                            .label("angle without length")
+                            .help("add the arc length, such as `length = \"34 mm\"`"),
+                    );
                     return None;
                 };
                 Shape::new(angle.value.clone(), length.value.si)
-                    .map_err(|e| self.error(Diagnostic::error("E0503", angle.span, e.to_string()).label("impossible shape").help("change the coefficients")))
+                    .map_err(|e| {
+                        self.error(
+                            Diagnostic::error("E0503", angle.span, e.to_string()).label("impossible shape").help("change the coefficients"),
+                        );
+                    })
                     .ok()
                     .map(ShapeForm::Whole)
             }
             [(first, one), (second, other), ..] => {
                 self.error(
-                    Diagnostic::error("E0305", second, format!("`{one}` and `{other}` exclude each other")).label("the second shape").related(first, "the first").help("keep one"),
+                    Diagnostic::error("E0305", second, format!("`{one}` and `{other}` exclude each other"))
+                        .label("the second shape")
+                        .related(first, "the first")
+                        .help("keep one"),
                 );
                 None
             }
@@ -403,7 +442,9 @@ impl Builder<'_> {
 
     fn support(&mut self, member: &Member<spec::Node>) -> Option<Support> {
         let node = &member.value;
-        let stray = |what: &str, span: Span| Diagnostic::error("E0504", span, format!("`{what}` is for sliders")).help("add `support = \"slider\"`, or remove it");
+        let stray = |what: &str, span: Span| {
+            Diagnostic::error("E0504", span, format!("`{what}` is for sliders")).help("add `support = \"slider\"`, or remove it")
+        };
         let kind = node.support.as_ref().map(|s| s.value);
         if kind != Some("slider") {
             if let Some(direction) = &node.direction {
@@ -419,7 +460,11 @@ impl Builder<'_> {
             Some(_) => {
                 let Some(direction) = &node.direction else {
                     let span = node.support.as_ref().map_or(member.name.span, |s| s.span);
-                    self.error(Diagnostic::error("E0504", span, "a slider needs a `direction`").label("in which direction?").help("add, for example, `direction = [0, 1]`"));
+                    self.error(
+                        Diagnostic::error("E0504", span, "a slider needs a `direction`")
+                            .label("in which direction?")
+                            .help("add, for example, `direction = [0, 1]`"),
+                    );
                     return None;
                 };
                 let rotation = if node.rotation.as_ref().is_some_and(|r| r.value == "free") { Rotation::Free } else { Rotation::Fixed };
@@ -433,12 +478,17 @@ impl Builder<'_> {
     fn section(&mut self) -> Option<Section> {
         let material = &self.spec.material;
         let place = material.present.as_ref().map_or(self.place, |p| p.span);
-        if material.young_modulus.is_none() && material.catalogue.as_ref().is_none_or(|c| materials::find(&c.value).is_some()) && material.present.is_some() {
+        if material.young_modulus.is_none()
+            && material.catalogue.as_ref().is_none_or(|c| materials::find(&c.value).is_some())
+            && material.present.is_some()
+        {
             self.error(
-                Diagnostic::error("E0302", place, "`young_modulus` is missing").label("from this table").help("give `use = \"POM-C\"` or another entry of the catalogue, or `young_modulus = \"2 GPa\"`"),
+                Diagnostic::error("E0302", place, "`young_modulus` is missing")
+                    .label("from this table")
+                    .help("give `use = \"POM-C\"` or another entry of the catalogue, or `young_modulus = \"2 GPa\"`"),
             );
         }
-        let poisson = si(&material.poisson_ratio);
+        let poisson = si(material.poisson_ratio.as_ref());
         if poisson.is_none() && theory_of(self.spec) == Theory::Reissner && material.young_modulus.is_some() {
             self.error(
                 Diagnostic::error("E0302", place, "`poisson_ratio` is missing")
@@ -446,7 +496,12 @@ impl Builder<'_> {
                     .help("the Reissner model needs it for the shear stiffness; give it, or `use` a catalogue entry, or choose `model.beam = \"inextensible\"`"),
             );
         }
-        Some(Section { young_pa: si(&material.young_modulus)?, thickness_m: si(&self.spec.design.thickness).unwrap_or(f64::NAN), depth_m: si(&self.spec.design.depth)?, poisson })
+        Some(Section {
+            young_pa: si(material.young_modulus.as_ref())?,
+            thickness_m: si(self.spec.design.thickness.as_ref()).unwrap_or(f64::NAN),
+            depth_m: si(self.spec.design.depth.as_ref())?,
+            poisson,
+        })
     }
 
     /// Positions of all nodes: as typed, or following from beams given as a whole.
@@ -489,12 +544,16 @@ impl Builder<'_> {
                 Ok(shape) => shape,
                 Err(error) => {
                     let span = beam.bend.as_ref().map_or(member.name.span, |b| b.span);
-                    self.error(Diagnostic::error("E0503", span, format!("beam `{name}`: {error}")).label("this shape").help("move its nodes apart, or change its bend"));
+                    self.error(
+                        Diagnostic::error("E0503", span, format!("beam `{name}`: {error}"))
+                            .label("this shape")
+                            .help("move its nodes apart, or change its bend"),
+                    );
                     return None;
                 }
             },
         };
-        let thickness_m = si(&beam.thickness).or(si(&self.spec.design.thickness));
+        let thickness_m = si(beam.thickness.as_ref()).or(si(self.spec.design.thickness.as_ref()));
         if thickness_m.is_none() && !self.diagnostics.has_errors() {
             self.error(
                 Diagnostic::error("E0302", member.name.span, format!("beam `{name}` has no thickness"))
@@ -502,7 +561,9 @@ impl Builder<'_> {
                     .help("give `design.thickness = \"1 mm\"` for all beams, or `thickness` for this one"),
             );
         }
-        let hinged = |node: usize| beam.hinged.iter().flat_map(|h| &h.value).any(|h| self.spec.design.nodes.get(node).is_some_and(|n| n.name.value == h.value));
+        let hinged = |node: usize| {
+            beam.hinged.iter().flat_map(|h| &h.value).any(|h| self.spec.design.nodes.get(node).is_some_and(|n| n.name.value == h.value))
+        };
         let joint = |node: usize| if hinged(node) { Joint::Hinged } else { Joint::Rigid };
         let (start_joint, end_joint) = (joint(drawn.start), joint(drawn.end));
         let section = Section { thickness_m: thickness_m?, ..section? };
@@ -522,7 +583,11 @@ impl Builder<'_> {
             }
         });
         let Some(mirror) = parsed else {
-            self.error(Diagnostic::error("E0507", text.span, "this is not a mirror line").label("expected a line").help("write `mirror = \"x = 0\"` or `mirror = \"y = 2 mm\"`"));
+            self.error(
+                Diagnostic::error("E0507", text.span, "this is not a mirror line")
+                    .label("expected a line")
+                    .help("write `mirror = \"x = 0\"` or `mirror = \"y = 2 mm\"`"),
+            );
             return None;
         };
         let across = match mirror {
@@ -556,14 +621,20 @@ fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut 
     let node_name = |node: usize| spec.design.nodes.get(node).map_or("?", |n| n.name.value.as_str());
     let beam_name = |beam: usize| spec.design.beams.get(beam).map_or("?", |b| b.name.value.as_str());
     let diagnostic = match error {
-        NetworkError::DoesNotClose { beam, gap_m } => {
-            Diagnostic::error("E0502", beam_span(beam), format!("the shape of beam `{}` misses its node by {:.3e} m", beam_name(beam), gap_m))
-                .help("leave out `at` of one of its nodes, so that it follows from the shape, or give `bend` instead of `angle` and `length`")
+        NetworkError::DoesNotClose { beam, gap_m } => Diagnostic::error(
+            "E0502",
+            beam_span(beam),
+            format!("the shape of beam `{}` misses its node by {:.3e} m", beam_name(beam), gap_m),
+        )
+        .help("leave out `at` of one of its nodes, so that it follows from the shape, or give `bend` instead of `angle` and `length`"),
+        NetworkError::LooseNode { node } => {
+            Diagnostic::error("E0510", node_span(node), format!("no beam ends at node `{}`", node_name(node))).help("remove it, or join it")
         }
-        NetworkError::LooseNode { node } => Diagnostic::error("E0510", node_span(node), format!("no beam ends at node `{}`", node_name(node))).help("remove it, or join it"),
-        NetworkError::Mechanism { node } => Diagnostic::error("E0505", node_span(node), format!("the part of the network with node `{}` can move freely", node_name(node)))
-            .label("this part")
-            .help("clamp or pin a node of it, or join it to the rest"),
+        NetworkError::Mechanism { node } => {
+            Diagnostic::error("E0505", node_span(node), format!("the part of the network with node `{}` can move freely", node_name(node)))
+                .label("this part")
+                .help("clamp or pin a node of it, or join it to the rest")
+        }
         NetworkError::DriveBlocked { node } => {
             let span = spec.load.node.as_ref().map_or(place, |n| n.span);
             Diagnostic::error("E0506", span, format!("node `{}` cannot move in the direction of the load", node_name(node)))
@@ -580,7 +651,9 @@ fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut 
 
 fn other_place(error: &NetworkError, beam_span: &dyn Fn(usize) -> Span, node_span: &dyn Fn(usize) -> Span) -> Option<Span> {
     match *error {
-        NetworkError::Section { beam, .. } | NetworkError::Shape { beam, .. } | NetworkError::BeamOnOneNode { beam } => Some(beam_span(beam)),
+        NetworkError::Section { beam, .. } | NetworkError::Shape { beam, .. } | NetworkError::BeamOnOneNode { beam } => {
+            Some(beam_span(beam))
+        }
         NetworkError::Position { node } | NetworkError::Direction { node } => Some(node_span(node)),
         _ => None,
     }

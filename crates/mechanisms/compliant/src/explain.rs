@@ -7,7 +7,7 @@ const fn code(code: &'static str, title: &'static str, text: &'static str) -> Ex
 }
 
 /// Checks `COMP…`, errors of the design `E05…`, warnings `W05…`.
-pub const CODES: &[Explanation] = &[
+pub(crate) const CODES: &[Explanation] = &[
     code(
         "COMP001",
         "force band",
@@ -29,20 +29,60 @@ pub const CODES: &[Explanation] = &[
         "Smallest slope dF/dΔ over the travel against `requirements.stiffness.min`, 0 by default. Where the slope is negative, a device driven by a force (a weight, a soft actuator) jumps; driven by a stiff displacement it does not, and a small negative slope can be allowed on purpose, as in the paper's mechanism (−0.02 N/mm).\n\nThe slope is computed from the tangent of the equilibrium equations, not by differences.",
     ),
     code("COMP005", "largest stiffness", "Largest slope dF/dΔ over the travel against `requirements.stiffness.max`."),
-    code("COMP006", "limit on a metric", "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have, or that this version does not compute, is *not assessed*, which does not count as met."),
-    code("E0501", "position of a node unknown", "A node has `at`, or it is joined by a beam with `angle` and `length` to a node whose position is known."),
-    code("E0502", "a beam does not fit between its nodes", "A beam given by `angle` and `length` must end where its node is; a beam joins two different nodes. Printed nodes and shapes are usually rounded and do not close exactly: give one of the two and let the other follow. With `bend`, c0 and the length follow from the nodes, so such a beam always closes."),
-    code("E0503", "impossible shape", "The bend coefficients make the beam close on itself, so that it cannot span its two nodes, or the nodes lie on each other."),
+    code(
+        "COMP006",
+        "limit on a metric",
+        "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have, or that this version does not compute, is *not assessed*, which does not count as met.",
+    ),
+    code(
+        "E0501",
+        "position of a node unknown",
+        "A node has `at`, or it is joined by a beam with `angle` and `length` to a node whose position is known.",
+    ),
+    code(
+        "E0502",
+        "a beam does not fit between its nodes",
+        "A beam given by `angle` and `length` must end where its node is; a beam joins two different nodes. Printed nodes and shapes are usually rounded and do not close exactly: give one of the two and let the other follow. With `bend`, c0 and the length follow from the nodes, so such a beam always closes.",
+    ),
+    code(
+        "E0503",
+        "impossible shape",
+        "The bend coefficients make the beam close on itself, so that it cannot span its two nodes, or the nodes lie on each other.",
+    ),
     code("E0504", "slider and direction", "A slider needs the direction in which it moves; only sliders have a direction and a rotation."),
-    code("E0505", "the network can move freely", "A part of the network could move as a rigid body without any beam bending. Clamp or pin one of its nodes, or join it to the rest."),
+    code(
+        "E0505",
+        "the network can move freely",
+        "A part of the network could move as a rigid body without any beam bending. Clamp or pin one of its nodes, or join it to the rest.",
+    ),
     code("E0506", "the load cannot move its node", "The support of the loaded node does not allow a motion along `load.direction`."),
     code("E0507", "not a mirror line", "Mirror lines are parallel to an axis: `x = 0`, `y = 2 mm`."),
     code("E0508", "the load leaves the mirror line", "The two halves move alike only if the load moves along the mirror line."),
     code("E0509", "the network cannot be solved as described", "The engine refuses a value or a combination; the message says which."),
     code("E0510", "a loose node", "No beam ends at this node."),
-    code("W0501", "a beam is not slender", "Beam theory neglects what happens near the ends of a beam. Below a length of about ten times the thickness its error is no longer small; compare with a solid model."),
-    code("W0502", "a beam is strongly curved", "In a curved beam the stress at the inner face is larger than in a straight one, by about a third of thickness over radius. The computed stress is that of a straight beam."),
-    code("W0503", "the mechanism would jump under a dead force", "The curve has a local maximum: a device that is loaded by a growing force and not by a displacement jumps from there to the next place with the same force."),
-    code("W0504", "stress beyond yield", "Beyond the yield stress the material is no longer linear; the real force is lower and the part keeps a deformation."),
-    code("W0505", "few stations for this curve", "Forces at the stations are accurate as stated, but values found between them (limits of ranges, extrema) are interpolated and less accurate."),
+    code(
+        "W0501",
+        "a beam is not slender",
+        "Beam theory neglects what happens near the ends of a beam. Below a length of about ten times the thickness its error is no longer small; compare with a solid model.",
+    ),
+    code(
+        "W0502",
+        "a beam is strongly curved",
+        "In a curved beam the stress at the inner face is larger than in a straight one, by about a third of thickness over radius. The computed stress is that of a straight beam.",
+    ),
+    code(
+        "W0503",
+        "the mechanism would jump under a dead force",
+        "The curve has a local maximum: a device that is loaded by a growing force and not by a displacement jumps from there to the next place with the same force.",
+    ),
+    code(
+        "W0504",
+        "stress beyond yield",
+        "Beyond the yield stress the material is no longer linear; the real force is lower and the part keeps a deformation.",
+    ),
+    code(
+        "W0505",
+        "few stations for this curve",
+        "Forces at the stations are accurate as stated, but values found between them (limits of ranges, extrema) are interpolated and less accurate.",
+    ),
 ];

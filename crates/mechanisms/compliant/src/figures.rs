@@ -1,14 +1,23 @@
 //! Curves and figures of a result.
 
+use std::fmt::Write as _;
+
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
-use forcewright_model::{Axis, Branch, Curve, Figure, FigureContent, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan};
+use forcewright_model::{
+    Axis, Branch, Curve, Figure, FigureContent, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan,
+};
 
 use crate::analysis::{Behaviour, Measured, RANGE_FRACTION};
 use crate::design::Design;
 use crate::scene::scene;
 
 fn displacement_axis(design: &Design) -> Axis {
-    Axis { name: "displacement", label: "Displacement Δ".to_owned(), dimension: Dimension::Length, display: design.units.displacement.clone() }
+    Axis {
+        name: "displacement",
+        label: "Displacement Δ".to_owned(),
+        dimension: Dimension::Length,
+        display: design.units.displacement.clone(),
+    }
 }
 
 fn force_axis(design: &Design) -> Axis {
@@ -19,15 +28,14 @@ fn stress_axis(design: &Design) -> Axis {
     Axis { name: "stress", label: "Largest stress |σ|".to_owned(), dimension: Dimension::Stress, display: design.units.stress.clone() }
 }
 
-/// Force that a beam carries along the load, of the whole layout, N: what it takes of the force at its start.
+/// Force that a beam passes on from its end to its start, in the sense of the load, whole layout, N.
 fn beam_force_n(behaviour: &Behaviour, direction: [f64; 2], point: usize, beam: usize) -> f64 {
     let [h, v] = behaviour.path.points[point].beams[beam].force_n;
-    // Positive where the beam carries compression along the load.
-    -behaviour.copies * (h * direction[0] + v * direction[1])
+    behaviour.copies * (h * direction[0] + v * direction[1])
 }
 
 /// Every curve of a result.
-pub fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
+pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
     let points = &behaviour.path.points;
     let x: Vec<f64> = points.iter().map(|p| p.displacement).collect();
     let one = |name: &'static str, label: &str, dimension: Dimension, display: Unit, y: Vec<f64>| Curve {
@@ -48,7 +56,7 @@ pub fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
 }
 
 /// Every figure of a report.
-pub fn figures(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Figure> {
+pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Figure> {
     let mut all = vec![Figure {
         id: "mechanism",
         title: "Mechanism".to_owned(),
@@ -75,22 +83,50 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
         if let Some(level) = level {
             let percent = format_number(100.0 * band, 3);
             let what = if nominal.is_some() { "required" } else { "free level" };
-            bands.push(HorizontalBand { from: level * (1.0 - band), to: level * (1.0 + band), extent: None, label: format!("{} ± {percent} % ({what})", format_si(level, force, 4)) });
+            bands.push(HorizontalBand {
+                from: level * (1.0 - band),
+                to: level * (1.0 + band),
+                extent: None,
+                label: format!("{} ± {percent} % ({what})", format_si(level, force, 4)),
+            });
         }
     }
     let mut spans = Vec::new();
     if let Some(usable) = measured.usable {
-        spans.push(VerticalSpan { from: usable.start, to: usable.end, label: format!("inside the band: {}", format_si(usable.length(), length, 4)) });
-        caption = format!("The force stays inside the band from {} to {}. ", format_si(usable.start, length, 4), format_si(usable.end, length, 4));
+        spans.push(VerticalSpan {
+            from: usable.start,
+            to: usable.end,
+            label: format!("inside the band: {}", format_si(usable.length(), length, 4)),
+        });
+        caption = format!(
+            "The force stays inside the band from {} to {}. ",
+            format_si(usable.start, length, 4),
+            format_si(usable.end, length, 4)
+        );
     }
     let mut markers = Vec::new();
     if let (Some(c), Some(end)) = (measured.get("range_start"), measured.get("force_at_end")) {
         let fraction = format_number(100.0 * RANGE_FRACTION, 3);
-        markers.push(Marker { x: c, y: RANGE_FRACTION * end, label: "c".to_owned(), note: format!("c = {}: F last rises through {fraction} % of its end value", format_si(c, length, 4)) });
-        markers.push(Marker { x: design.travel_m, y: end, label: "d".to_owned(), note: format!("d = {}: end of the travel, F = {}", format_si(design.travel_m, length, 4), format_si(end, force, 4)) });
+        markers.push(Marker {
+            x: c,
+            y: RANGE_FRACTION * end,
+            label: "c".to_owned(),
+            note: format!("c = {}: F last rises through {fraction} % of its end value", format_si(c, length, 4)),
+        });
+        markers.push(Marker {
+            x: design.travel_m,
+            y: end,
+            label: "d".to_owned(),
+            note: format!("d = {}: end of the travel, F = {}", format_si(design.travel_m, length, 4), format_si(end, force, 4)),
+        });
     }
     if let (Some(x), Some(f)) = (measured.get("force_local_max_at"), measured.get("force_local_max")) {
-        caption.push_str(&format!("Local maximum {} at {}: from there a force-driven device would jump. ", format_si(f, force, 4), format_si(x, length, 4)));
+        let _ = write!(
+            caption,
+            "Local maximum {} at {}: from there a force-driven device would jump. ",
+            format_si(f, force, 4),
+            format_si(x, length, 4)
+        );
     }
     caption.push_str("c and d are the limits of the operational range as Lan, Wang & Chen define it.");
     let series = Series {
@@ -99,7 +135,16 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
         y: points.iter().map(|p| behaviour.copies * p.force).collect(),
         stroke: Stroke::Main,
     };
-    let plot = Plot { x: displacement_axis(design), y: force_axis(design), series: vec![series], bands, levels: Vec::new(), spans, markers, from_zero: true };
+    let plot = Plot {
+        x: displacement_axis(design),
+        y: force_axis(design),
+        series: vec![series],
+        bands,
+        levels: Vec::new(),
+        spans,
+        markers,
+        from_zero: true,
+    };
     Figure { id: "force", title: "Force over displacement".to_owned(), caption, content: FigureContent::Plot(plot) }
 }
 
@@ -108,10 +153,18 @@ fn stress_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) ->
     let x: Vec<f64> = points.iter().map(|p| p.displacement).collect();
     let mut levels = Vec::new();
     if let Some(allowed) = design.allowable_pa() {
-        levels.push(HorizontalLine { at: allowed, label: format!("allowed: {}", format_si(allowed, &design.units.stress, 4)), stroke: Stroke::Limit });
+        levels.push(HorizontalLine {
+            at: allowed,
+            label: format!("allowed: {}", format_si(allowed, &design.units.stress, 4)),
+            stroke: Stroke::Limit,
+        });
     }
     if let Some(yield_pa) = design.yield_pa {
-        levels.push(HorizontalLine { at: yield_pa, label: format!("yield: {}", format_si(yield_pa, &design.units.stress, 4)), stroke: Stroke::Reference });
+        levels.push(HorizontalLine {
+            at: yield_pa,
+            label: format!("yield: {}", format_si(yield_pa, &design.units.stress, 4)),
+            stroke: Stroke::Reference,
+        });
     }
     // The beams that ever carry the largest stress, at most three; the envelope of all of them is the first line.
     let envelope = Series {
@@ -153,8 +206,9 @@ fn beam_forces_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     let strokes = [Stroke::Main, Stroke::Second, Stroke::Third, Stroke::Reference];
     let x: Vec<f64> = behaviour.path.points.iter().map(|p| p.displacement).collect();
     // More lines than line styles would be unreadable: the beams with the largest forces are shown.
-    let mut beams: Vec<(usize, Vec<f64>)> =
-        (0..design.network.beams.len()).map(|b| (b, (0..x.len()).map(|p| beam_force_n(behaviour, design.direction, p, b)).collect())).collect();
+    let mut beams: Vec<(usize, Vec<f64>)> = (0..design.network.beams.len())
+        .map(|b| (b, (0..x.len()).map(|p| beam_force_n(behaviour, design.direction, p, b)).collect()))
+        .collect();
     let largest = |y: &[f64]| y.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
     beams.sort_by(|a, b| largest(&b.1).total_cmp(&largest(&a.1)).then(a.0.cmp(&b.0)));
     beams.truncate(strokes.len());
@@ -162,14 +216,28 @@ fn beam_forces_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     let series = beams
         .into_iter()
         .zip(strokes)
-        .map(|((b, y), stroke)| Series { label: format!("beam {}", design.beam_names.get(b).map_or("?", String::as_str)), x: x.clone(), y, stroke })
+        .map(|((b, y), stroke)| Series {
+            label: format!("beam {}", design.beam_names.get(b).map_or("?", String::as_str)),
+            x: x.clone(),
+            y,
+            stroke,
+        })
         .collect();
     let y = Axis { label: "Force along the load".to_owned(), ..force_axis(design) };
-    let plot = Plot { x: displacement_axis(design), y, series, bands: Vec::new(), levels: Vec::new(), spans: Vec::new(), markers: Vec::new(), from_zero: true };
+    let plot = Plot {
+        x: displacement_axis(design),
+        y,
+        series,
+        bands: Vec::new(),
+        levels: Vec::new(),
+        spans: Vec::new(),
+        markers: Vec::new(),
+        from_zero: true,
+    };
     Figure {
         id: "beam-forces",
         title: "Force carried by each beam".to_owned(),
-        caption: "Component along the load, whole layout; positive in the sense in which the load pushes a beam from its end to its start. Beams that take turns in rising and falling make the sum constant.".to_owned(),
+        caption: "What each beam passes on from its end to its start along the load, whole layout; positive in the sense of the load. Beams that take turns in rising and falling make the sum constant.".to_owned(),
         content: FigureContent::Plot(plot),
     }
 }

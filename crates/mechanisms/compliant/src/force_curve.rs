@@ -29,6 +29,15 @@ impl Interval {
     }
 }
 
+/// Local extrema of a curve, each as displacement and force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extrema {
+    /// First local maximum.
+    pub max: Option<(f64, f64)>,
+    /// First local minimum after it.
+    pub min: Option<(f64, f64)>,
+}
+
 /// Ratios are compared with this slack, so that an interval that touches a peak exactly is not lost to rounding.
 const SLACK: f64 = 1e-12;
 
@@ -122,7 +131,7 @@ impl ForceCurve {
     }
 
     /// First local maximum and first local minimum after it: displacement and force.
-    pub fn extrema(&self) -> (Option<(f64, f64)>, Option<(f64, f64)>) {
+    pub fn extrema(&self) -> Extrema {
         let knots = self.knots();
         let inner = |falls_after: bool, after: f64| {
             knots.windows(3).filter(|w| w[1] > after).find_map(|w| {
@@ -131,7 +140,7 @@ impl ForceCurve {
             })
         };
         let max = inner(true, -1.0);
-        (max, max.and_then(|(x, _)| inner(false, x)))
+        Extrema { max, min: max.and_then(|(x, _)| inner(false, x)) }
     }
 
     /// The paper's c: the last displacement before the end at which the force rises through `fraction` of its end value.
@@ -192,7 +201,11 @@ impl ForceCurve {
         starts.sort_by(f64::total_cmp);
         starts.dedup();
         let reach = |start: f64| Interval { start, end: self.flat_end(start, ratio, &knots) };
-        let best = starts.iter().enumerate().map(|(i, s)| (i, reach(*s))).max_by(|a, b| a.1.length().total_cmp(&b.1.length()).then(b.0.cmp(&a.0)))?;
+        let best = starts
+            .iter()
+            .enumerate()
+            .map(|(i, s)| (i, reach(*s)))
+            .max_by(|a, b| a.1.length().total_cmp(&b.1.length()).then(b.0.cmp(&a.0)))?;
         // Where no level pushes it, the optimum is smooth: refine between the neighbouring candidates.
         let left = starts[best.0.saturating_sub(1)];
         let right = starts[(best.0 + 1).min(starts.len() - 1)];
@@ -276,7 +289,7 @@ mod tests {
 
     #[test]
     fn extrema_of_a_cubic() {
-        let (max, min) = cubic().extrema();
+        let Extrema { max, min } = cubic().extrema();
         let ((xm, fm), (xn, f_n)) = (max.unwrap(), min.unwrap());
         assert!((xm - 1.0).abs() < 1e-12 && (fm - 2.0).abs() < 1e-14);
         assert!((xn - 2.0).abs() < 1e-12 && (f_n - 1.8).abs() < 1e-14);

@@ -21,7 +21,7 @@ use forcewright_model::{Counter, Outcome, Status, StatusKind};
 
 pub use analysis::{Behaviour, LargestStress, Measured, measure};
 pub use design::{Design, DisplayUnits, Mirror, Requirements, StressLimit};
-pub use force_curve::{ForceCurve, Interval};
+pub use force_curve::{Extrema, ForceCurve, Interval};
 pub use metrics::{METRICS, MetricInfo};
 pub use spec::Spec;
 

@@ -43,6 +43,11 @@ pub const METRICS: &[MetricInfo] = &[
     metric("energy_at_end", Dimension::Energy, false, "Elastic energy at the full travel, whole layout."),
     metric("mass", Dimension::Mass, false, "Mass of the beams, whole layout, without blocks."),
     metric("length_ratio_max", Dimension::Ratio, false, "Largest arc length of a beam over its chord."),
-    metric("clearance_min", Dimension::Length, false, "Smallest distance between beam surfaces over the travel, outside the joints that they share."),
+    metric(
+        "clearance_min",
+        Dimension::Length,
+        false,
+        "Smallest distance between beam surfaces over the travel, outside the joints that they share.",
+    ),
     metric("envelope_margin", Dimension::Length, false, "Smallest distance of the mechanism to its envelope over the travel."),
 ];

@@ -13,7 +13,7 @@ use crate::design::{self, Design};
 use crate::spec::Spec;
 
 /// The papers of this family.
-pub static ALL: &[Reproduction] =
+pub(crate) static ALL: &[Reproduction] =
     &[Reproduction { key: "lan2010", title: "Lan, Wang & Chen 2010: compliant constant-force mechanism of Table 3", run: lan2010 }];
 
 const ROWS: &str = include_str!("../../../../reference/lan2010.toml");

@@ -12,7 +12,7 @@ use crate::design::Design;
 const SAMPLES: usize = 49;
 
 /// Draws a design, and its last state if there is one.
-pub fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Scene {
+pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Scene {
     let last = behaviour.path.points.last();
     let artist = Artist { design, size_m: size_m(design) };
     let mut items = Vec::new();
@@ -34,7 +34,12 @@ pub fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Sce
     let reached = last.map_or_else(String::new, |p| format_si(p.displacement, &design.units.displacement, 4));
     Scene {
         items,
-        scale: Some(ColourScale { label: "largest |σ| over both faces".to_owned(), display: design.units.stress.clone(), max: scale_end, limit }),
+        scale: Some(ColourScale {
+            label: "largest |σ| over both faces".to_owned(),
+            display: design.units.stress.clone(),
+            max: scale_end,
+            limit,
+        }),
         display: design.units.length.clone(),
         description: format!(
             "The mechanism as made (outline) and at Δ = {reached} (coloured by stress): {} beams and {} nodes{}.",
@@ -74,9 +79,10 @@ impl Artist<'_> {
             let place = |i: usize| i as f64 / (SAMPLES - 1) as f64;
             let state = state.map(|s| &s.beams[index]);
             let points: Vec<[f64; 2]> = (0..SAMPLES)
-                .map(|i| match state {
-                    Some(state) => state.shape_m(place(i)),
-                    None => {
+                .map(|i| {
+                    if let Some(state) = state {
+                        state.shape_m(place(i))
+                    } else {
                         let p = beam.shape.point_m(place(i));
                         [start[0] + p[0], start[1] + p[1]]
                     }
@@ -91,7 +97,8 @@ impl Artist<'_> {
                     .collect::<Vec<_>>()
             });
             let width_m = beam.section.thickness_m;
-            let (role, copy) = if state.is_some() { (Role::Deformed, Role::DeformedCopy) } else { (Role::Undeformed, Role::UndeformedCopy) };
+            let (role, copy) =
+                if state.is_some() { (Role::Deformed, Role::DeformedCopy) } else { (Role::Undeformed, Role::UndeformedCopy) };
             if let Some(mirror) = self.design.mirror {
                 let points = points.iter().map(|p| mirror.image(*p)).collect();
                 items.push(Item::Line { points, width_m, role: copy, values: values.clone() });
@@ -203,7 +210,11 @@ impl Artist<'_> {
         let head = [centre[0] + moved[0] - gap * d[0], centre[1] + moved[1] - gap * d[1]];
         let tail = [head[0] - 0.22 * self.size_m * d[0], head[1] - 0.22 * self.size_m * d[1]];
         let units = &self.design.units;
-        let label = format!("F = {} at Δ = {}", format_si(behaviour.copies * point.force, &units.force, 4), format_si(point.displacement, &units.displacement, 4));
+        let label = format!(
+            "F = {} at Δ = {}",
+            format_si(behaviour.copies * point.force, &units.force, 4),
+            format_si(point.displacement, &units.displacement, 4)
+        );
         items.push(Item::Arrow { from: tail, to: head, label });
     }
 

@@ -9,19 +9,27 @@ use crate::metrics::METRICS;
 /// Everything that a project file can say.
 #[derive(Debug, Default)]
 pub struct Spec {
-    pub header: Header,
-    pub requirements: Section<Requirements>,
-    pub material: Section<Material>,
-    pub process: Section<Process>,
-    pub design: Section<Design>,
-    pub layout: Section<Layout>,
-    pub load: Section<Load>,
-    pub model: Section<Model>,
+    /// Schema, family, title.
+    pub(crate) header: Header,
+    /// `[requirements]`
+    pub(crate) requirements: Section<Requirements>,
+    /// `[material]`
+    pub(crate) material: Section<Material>,
+    /// `[process]`
+    pub(crate) process: Section<Process>,
+    /// `[design]`
+    pub(crate) design: Section<Design>,
+    /// `[layout]`
+    pub(crate) layout: Section<Layout>,
+    /// `[load]`
+    pub(crate) load: Section<Load>,
+    /// `[model]`
+    pub(crate) model: Section<Model>,
 }
 
 /// What the mechanism must do.
 #[derive(Debug, Default)]
-pub struct Requirements {
+pub(crate) struct Requirements {
     pub force: Section<ForceRequirement>,
     pub travel: Slot<Quantity>,
     pub stress: Section<StressRequirement>,
@@ -31,28 +39,28 @@ pub struct Requirements {
 
 /// A force level and how far from it the force may be.
 #[derive(Debug, Default)]
-pub struct ForceRequirement {
+pub(crate) struct ForceRequirement {
     pub nominal: Slot<Quantity>,
     pub band: Slot<Quantity>,
 }
 
 /// How much stress is allowed.
 #[derive(Debug, Default)]
-pub struct StressRequirement {
+pub(crate) struct StressRequirement {
     pub safety_factor: Slot<Quantity>,
     pub max: Slot<Quantity>,
 }
 
 /// Which slopes of the force are allowed.
 #[derive(Debug, Default)]
-pub struct StiffnessRequirement {
+pub(crate) struct StiffnessRequirement {
     pub min: Slot<Quantity>,
     pub max: Slot<Quantity>,
 }
 
 /// Bounds on metrics, in the order of [`METRICS`].
 #[derive(Debug)]
-pub struct Limits {
+pub(crate) struct Limits {
     pub bounds: Vec<Section<Bounds>>,
 }
 
@@ -65,7 +73,7 @@ impl Default for Limits {
 
 /// A smallest and a largest value of a metric.
 #[derive(Debug)]
-pub struct Bounds {
+pub(crate) struct Bounds {
     dimension: Dimension,
     pub min: Slot<Quantity>,
     pub max: Slot<Quantity>,
@@ -73,7 +81,7 @@ pub struct Bounds {
 
 /// What the beams are made of.
 #[derive(Debug, Default)]
-pub struct Material {
+pub(crate) struct Material {
     pub catalogue: Slot<String>,
     pub young_modulus: Slot<Quantity>,
     pub poisson_ratio: Slot<Quantity>,
@@ -83,14 +91,14 @@ pub struct Material {
 
 /// How it is made.
 #[derive(Debug, Default)]
-pub struct Process {
+pub(crate) struct Process {
     method: Slot<&'static str>,
     cutter_diameter: Slot<Quantity>,
 }
 
 /// The flexure network.
 #[derive(Debug, Default)]
-pub struct Design {
+pub(crate) struct Design {
     pub thickness: Slot<Quantity>,
     pub depth: Slot<Quantity>,
     pub nodes: Vec<Member<Node>>,
@@ -99,7 +107,7 @@ pub struct Design {
 
 /// A node.
 #[derive(Clone, Debug, Default)]
-pub struct Node {
+pub(crate) struct Node {
     pub at: Slot<[Quantity; 2]>,
     pub support: Slot<&'static str>,
     pub direction: Slot<[f64; 2]>,
@@ -108,7 +116,7 @@ pub struct Node {
 
 /// A beam.
 #[derive(Clone, Debug, Default)]
-pub struct Beam {
+pub(crate) struct Beam {
     pub between: Slot<Vec<Located<String>>>,
     pub bend: Slot<Vec<f64>>,
     pub straight: Slot<bool>,
@@ -121,13 +129,13 @@ pub struct Beam {
 
 /// Copies of the drawn network.
 #[derive(Debug, Default)]
-pub struct Layout {
+pub(crate) struct Layout {
     pub mirror: Slot<String>,
 }
 
 /// What happens to it.
 #[derive(Debug, Default)]
-pub struct Load {
+pub(crate) struct Load {
     pub node: Slot<String>,
     pub direction: Slot<[f64; 2]>,
     pub travel: Slot<Quantity>,
@@ -135,32 +143,32 @@ pub struct Load {
 
 /// Which equations are solved, and how well.
 #[derive(Debug, Default)]
-pub struct Model {
+pub(crate) struct Model {
     pub beam: Slot<&'static str>,
     pub joints: Slot<&'static str>,
     pub accuracy: Slot<Quantity>,
 }
 
 /// Supports of a node.
-pub const SUPPORTS: &[Word] = &[
+pub(crate) const SUPPORTS: &[Word] = &[
     Word { word: "clamped", doc: "position and rotation fixed" },
     Word { word: "pinned", doc: "position fixed, free to rotate" },
     Word { word: "slider", doc: "moves along `direction`" },
 ];
 /// Rotation of a slider.
-pub const ROTATIONS: &[Word] = &[Word { word: "fixed", doc: "keeps its angle" }, Word { word: "free", doc: "turns freely" }];
+pub(crate) const ROTATIONS: &[Word] = &[Word { word: "fixed", doc: "keeps its angle" }, Word { word: "free", doc: "turns freely" }];
 /// Beam models.
-pub const BEAM_MODELS: &[Word] = &[
+pub(crate) const BEAM_MODELS: &[Word] = &[
     Word { word: "reissner", doc: "geometrically exact: bending, stretching and shear" },
     Word { word: "inextensible", doc: "bending only, as in the paper" },
 ];
 /// Models of joints.
-pub const JOINT_MODELS: &[Word] = &[
+pub(crate) const JOINT_MODELS: &[Word] = &[
     Word { word: "point", doc: "beams meet at points" },
     Word { word: "overlap", doc: "rigid zones where beams of finite thickness meet" },
 ];
 /// Ways of making it.
-pub const METHODS: &[Word] = &[
+pub(crate) const METHODS: &[Word] = &[
     Word { word: "milling", doc: "milled from sheet" },
     Word { word: "laser", doc: "laser cut" },
     Word { word: "waterjet", doc: "waterjet cut" },
@@ -178,11 +186,18 @@ const RESERVED_SECTIONS: &[Reserved] = &[
     Reserved { key: "measurements", instead: STUDY, ignored: true },
     Reserved { key: "calibrate", instead: STUDY, ignored: true },
     Reserved { key: "scenario", instead: "scenarios are not available yet; `solve` gives the force over the displacement", ignored: true },
-    Reserved { key: "environment", instead: "compliant mechanisms are solved without gravity, at the temperature of the material data", ignored: true },
+    Reserved {
+        key: "environment",
+        instead: "compliant mechanisms are solved without gravity, at the temperature of the material data",
+        ignored: true,
+    },
     Reserved { key: "errors", instead: "errors of making are not available yet; change the parameter itself", ignored: false },
 ];
-const RESERVED_NODE: &[Reserved] =
-    &[Reserved { key: "on", instead: "it restricts an optimiser, which this version does not have; `solve` does not need it", ignored: true }];
+const RESERVED_NODE: &[Reserved] = &[Reserved {
+    key: "on",
+    instead: "it restricts an optimiser, which this version does not have; `solve` does not need it",
+    ignored: true,
+}];
 const RESERVED_BEAM: &[Reserved] = &[
     Reserved { key: "through", instead: "give the shape by `bend`, `arc`, `straight`, or `angle` with `length`", ignored: false },
     Reserved { key: "material", instead: "all beams are of `[material]` in this version", ignored: false },
@@ -218,11 +233,14 @@ impl Describe for Requirements {
     fn describe(&mut self, v: &mut dyn Visitor) {
         self.force.describe(v, &Param::new("force", "Level and band of the force."));
         v.quantity(
-            &Param::new("travel", "Usable stroke: shortest displacement over which the force must stay inside the band.").of(Dimension::Length).above(0.0, LARGEST_M),
+            &Param::new("travel", "Usable stroke: shortest displacement over which the force must stay inside the band.")
+                .of(Dimension::Length)
+                .above(0.0, LARGEST_M),
             &mut self.travel,
         );
         self.stress.describe(v, &Param::new("stress", "Stress allowed over the whole travel."));
-        self.stiffness.describe(v, &Param::new("stiffness", "Slope dF/dΔ over the whole travel; without this section, no negative stiffness."));
+        self.stiffness
+            .describe(v, &Param::new("stiffness", "Slope dF/dΔ over the whole travel; without this section, no negative stiffness."));
         self.limits.describe(v, &Param::new("limits", "Limits on any metric, by its name."));
         v.reserved(RESERVED_REQUIREMENTS);
     }
@@ -230,7 +248,10 @@ impl Describe for Requirements {
 
 impl Describe for ForceRequirement {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        v.quantity(&Param::new("nominal", "Force level; without it the level is free.").of(Dimension::Force).above(0.0, 1e6), &mut self.nominal);
+        v.quantity(
+            &Param::new("nominal", "Force level; without it the level is free.").of(Dimension::Force).above(0.0, 1e6),
+            &mut self.nominal,
+        );
         v.quantity(&Param::new("band", "Half width β of the band, relative to the level.").above(0.0, 0.9).required(), &mut self.band);
     }
 }
@@ -269,7 +290,10 @@ impl Describe for Material {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.text(&Param::new("use", "Entry of the material catalogue; the keys below override its values."), &mut self.catalogue);
         v.quantity(&Param::new("young_modulus", "Young's modulus E.").of(Dimension::Stress).above(0.0, 1e13), &mut self.young_modulus);
-        v.quantity(&Param::new("poisson_ratio", "Poisson's ratio ν; only the shear of the Reissner model uses it.").within(0.0, 0.5), &mut self.poisson_ratio);
+        v.quantity(
+            &Param::new("poisson_ratio", "Poisson's ratio ν; only the shear of the Reissner model uses it.").within(0.0, 0.5),
+            &mut self.poisson_ratio,
+        );
         v.quantity(&Param::new("yield_stress", "Yield stress σ_y.").of(Dimension::Stress).above(0.0, 1e11), &mut self.yield_stress);
         v.quantity(&Param::new("density", "Density.").of(Dimension::Density).above(0.0, 3e4), &mut self.density);
     }
@@ -278,7 +302,12 @@ impl Describe for Material {
 impl Describe for Process {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.choice(&Param::new("method", "How it is made."), METHODS, &mut self.method);
-        v.quantity(&Param::new("cutter_diameter", "Diameter of the cutter: twice the smallest inner radius.").of(Dimension::Length).above(0.0, 0.1), &mut self.cutter_diameter);
+        v.quantity(
+            &Param::new("cutter_diameter", "Diameter of the cutter: twice the smallest inner radius.")
+                .of(Dimension::Length)
+                .above(0.0, 0.1),
+            &mut self.cutter_diameter,
+        );
     }
 }
 
@@ -286,7 +315,10 @@ impl Describe for Design {
     fn describe(&mut self, v: &mut dyn Visitor) {
         let thickness = |doc| Param::new("thickness", doc).of(Dimension::Length).above(0.0, 1.0);
         v.quantity(&thickness("In-plane thickness w of all beams that do not give their own."), &mut self.thickness);
-        v.quantity(&Param::new("depth", "Out-of-plane depth t of all beams.").of(Dimension::Length).above(0.0, LARGEST_M).required(), &mut self.depth);
+        v.quantity(
+            &Param::new("depth", "Out-of-plane depth t of all beams.").of(Dimension::Length).above(0.0, LARGEST_M).required(),
+            &mut self.depth,
+        );
         v.members(&Param::new("nodes", "Where beams meet and where the ground holds them.").required(), Form::Table, &mut self.nodes);
         v.members(&Param::new("beams", "Flexible beams.").required(), Form::List, &mut self.beams);
     }
@@ -307,12 +339,25 @@ impl Describe for Beam {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.names(&Param::new("between", "The two nodes it joins, from u = 0 to u = 1.").required(), 2, 2, &mut self.between);
         v.numbers(
-            &Param::new("bend", "Coefficients c1…cm of the intrinsic angle η(u) = c0 + c1·u + … in rad; c0 and the length follow from the nodes.").within(-50.0, 50.0),
+            &Param::new(
+                "bend",
+                "Coefficients c1…cm of the intrinsic angle η(u) = c0 + c1·u + … in rad; c0 and the length follow from the nodes.",
+            )
+            .within(-50.0, 50.0),
             &mut self.bend,
         );
         v.flag(&Param::new("straight", "A straight beam."), &mut self.straight);
-        v.quantity(&Param::new("arc", "A circular arc that turns by this angle, counter-clockwise positive.").of(Dimension::Angle).within(-6.2, 6.2), &mut self.arc);
-        v.numbers(&Param::new("angle", "Coefficients c0…cm of the intrinsic angle in rad, with `length`; the nodes then follow.").within(-50.0, 50.0), &mut self.angle);
+        v.quantity(
+            &Param::new("arc", "A circular arc that turns by this angle, counter-clockwise positive.")
+                .of(Dimension::Angle)
+                .within(-6.2, 6.2),
+            &mut self.arc,
+        );
+        v.numbers(
+            &Param::new("angle", "Coefficients c0…cm of the intrinsic angle in rad, with `length`; the nodes then follow.")
+                .within(-50.0, 50.0),
+            &mut self.angle,
+        );
         v.quantity(&Param::new("length", "Arc length, with `angle`.").of(Dimension::Length).above(0.0, LARGEST_M), &mut self.length);
         v.quantity(&Param::new("thickness", "Its own in-plane thickness w.").of(Dimension::Length).above(0.0, 1.0), &mut self.thickness);
         v.names(&Param::new("hinged", "Ends, by their nodes, that turn freely."), 0, 2, &mut self.hinged);
@@ -330,8 +375,14 @@ impl Describe for Layout {
 impl Describe for Load {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.text(&Param::new("node", "The node that is moved.").required(), &mut self.node);
-        v.direction(&Param::new("direction", "Direction of the displacement Δ and of the force F on the mechanism.").required(), &mut self.direction);
-        v.quantity(&Param::new("travel", "Largest displacement d.").of(Dimension::Length).above(0.0, LARGEST_M).required(), &mut self.travel);
+        v.direction(
+            &Param::new("direction", "Direction of the displacement Δ and of the force F on the mechanism.").required(),
+            &mut self.direction,
+        );
+        v.quantity(
+            &Param::new("travel", "Largest displacement d.").of(Dimension::Length).above(0.0, LARGEST_M).required(),
+            &mut self.travel,
+        );
         v.reserved(RESERVED_LOAD);
     }
 }
@@ -340,6 +391,9 @@ impl Describe for Model {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.choice(&Param::new("beam", "Deformations of a beam.").default("reissner"), BEAM_MODELS, &mut self.beam);
         v.choice(&Param::new("joints", "How beams meet.").default("point"), JOINT_MODELS, &mut self.joints);
-        v.quantity(&Param::new("accuracy", "Error allowed, relative to the largest force on the path.").within(1e-12, 1e-2).default("1e-8"), &mut self.accuracy);
+        v.quantity(
+            &Param::new("accuracy", "Error allowed, relative to the largest force on the path.").within(1e-12, 1e-2).default("1e-8"),
+            &mut self.accuracy,
+        );
     }
 }

@@ -17,7 +17,7 @@ fn statement(title: &str, text: impl Into<String>) -> Statement {
 }
 
 /// Which equations were solved and how.
-pub fn model(design: &Design) -> Vec<Statement> {
+pub(crate) fn model(design: &Design) -> Vec<Statement> {
     let beams = match design.theory {
         Theory::Inextensible => statement(
             "Inextensible beams",
@@ -28,7 +28,11 @@ pub fn model(design: &Design) -> Vec<Statement> {
             "Bending, stretching and shear without limit on rotation (Reissner 1972). As the axial and shear stiffness grow it becomes the paper's inextensible model, `model.beam = \"inextensible\"`.",
         ),
     };
-    let halves = if design.mirror.is_some() { "The drawn network is solved; its mirrored half moves alike, and force, energy and stiffness count both." } else { "The drawn network is the whole mechanism." };
+    let halves = if design.mirror.is_some() {
+        "The drawn network is solved; its mirrored half moves alike, and force, energy and stiffness count both."
+    } else {
+        "The drawn network is the whole mechanism."
+    };
     vec![
         beams,
         statement("Network", format!("Beams meet at points; rigid joints keep the angles between beams. {halves}")),
@@ -36,25 +40,37 @@ pub fn model(design: &Design) -> Vec<Statement> {
             "Solution",
             "Rotations in integrated Legendre polynomials, forces as multipliers, Newton's method. The path starts at rest and is followed in displacement with adaptive steps; it never starts from another design's solution. Polynomial degree grows until forces and stresses of two degrees agree.",
         ),
-        statement("Stress", "Bending and, in the geometrically exact model, axial stress, on both faces, over the whole length; the largest over the travel."),
+        statement(
+            "Stress",
+            "Bending and, in the geometrically exact model, axial stress, on both faces, over the whole length; the largest over the travel.",
+        ),
         statement("Material data", design.material_origin.clone()),
     ]
 }
 
 /// What is not modelled.
-pub fn limits() -> Vec<Statement> {
+pub(crate) fn limits() -> Vec<Statement> {
     vec![
-        statement("Joints", "The extra stiffness where beams of finite thickness overlap, and of fillets, is not modelled. For the paper's prototype both together explain up to about 0.75 N of the 0.9 N by which the bench lies above the beam model of 6 N."),
-        statement("Material", "Linear elastic. No plasticity, creep, relaxation, temperature or fatigue; plastics lose force under lasting load."),
+        statement(
+            "Joints",
+            "The extra stiffness where beams of finite thickness overlap, and of fillets, is not modelled. For the paper's prototype both together explain up to about 0.75 N of the 0.9 N by which the bench lies above the beam model of 6 N.",
+        ),
+        statement(
+            "Material",
+            "Linear elastic. No plasticity, creep, relaxation, temperature or fatigue; plastics lose force under lasting load.",
+        ),
         statement("Contact", "Beams pass through each other and through themselves; look at the picture."),
         statement("Plane", "Motion in the plane only: no buckling or tilting out of it, no weight, no dynamics."),
-        statement("Slenderness", "Beam theory holds for beams about ten times longer than thick; the stress of strongly curved beams is that of straight ones."),
+        statement(
+            "Slenderness",
+            "Beam theory holds for beams about ten times longer than thick; the stress of strongly curved beams is that of straight ones.",
+        ),
         statement("Symmetry", "A mirrored mechanism is assumed to move symmetrically; a sideways mode of the whole is not looked for."),
     ]
 }
 
 /// Works used.
-pub fn sources(design: &Design) -> Vec<Citation> {
+pub(crate) fn sources(design: &Design) -> Vec<Citation> {
     let mut all = vec![Citation {
         key: "lan2010",
         text: "C.-C. Lan, J.-H. Wang, Y.-H. Chen: A Compliant Constant-Force Mechanism for Adaptive Robot End-Effector Operations. IEEE Int. Conf. on Robotics and Automation (ICRA), 2010.",
@@ -71,7 +87,7 @@ pub fn sources(design: &Design) -> Vec<Citation> {
 }
 
 /// Things to know about this result.
-pub fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Warning> {
+pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Warning> {
     let mut all = Vec::new();
     let name = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
     for (index, beam) in design.network.beams.iter().enumerate() {
@@ -79,7 +95,11 @@ pub fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
         if slenderness < SLENDER {
             all.push(Warning {
                 code: "W0501",
-                message: format!("beam `{}` is only {} times longer than thick; beam theory is doubtful below {SLENDER}", name(index), format_number(slenderness, 3)),
+                message: format!(
+                    "beam `{}` is only {} times longer than thick; beam theory is doubtful below {SLENDER}",
+                    name(index),
+                    format_number(slenderness, 3)
+                ),
             });
         }
         let steepest = (0..=64).map(|i| beam.shape.slope_at(f64::from(i) / 64.0).abs()).fold(0.0, f64::max);
@@ -101,7 +121,10 @@ pub fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
         let target = to.map_or_else(|| "beyond the travel".to_owned(), |x| format!("to {}", show(x)));
         all.push(Warning {
             code: "W0503",
-            message: format!("under a growing dead force the mechanism would jump from Δ = {} {target}; driven by displacement it does not", show(from)),
+            message: format!(
+                "under a growing dead force the mechanism would jump from Δ = {} {target}; driven by displacement it does not",
+                show(from)
+            ),
         });
     }
     if let (Some(stress), Some(yield_pa)) = (measured.stress, design.yield_pa)
@@ -110,7 +133,10 @@ pub fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
         let unit = Unit::clone(&design.units.stress);
         all.push(Warning {
             code: "W0504",
-            message: format!("the stress exceeds the yield stress of {}: beyond that the curve is not that of the real part", format_si(yield_pa, &unit, 4)),
+            message: format!(
+                "the stress exceeds the yield stress of {}: beyond that the curve is not that of the real part",
+                format_si(yield_pa, &unit, 4)
+            ),
         });
     }
     if behaviour.interpolation_error > 1e-6 {
