@@ -50,3 +50,8 @@ pub fn explanations() -> impl Iterator<Item = &'static Explanation> {
 pub fn reproductions() -> impl Iterator<Item = &'static Reproduction> {
     FAMILIES.iter().flat_map(|f| f.reproductions())
 }
+
+/// The README's Rust example compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
