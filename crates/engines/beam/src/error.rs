@@ -135,10 +135,11 @@ impl std::error::Error for NetworkError {
 }
 
 /// How a path ended. Controls are in the unit of the drive: m, rad, N or N·m.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Status {
     /// Every station was reached, to the accuracy asked.
+    #[default]
     Complete,
     /// Every station was reached, but two resolutions still differ by more than the accuracy asked.
     NotResolved {

@@ -15,8 +15,10 @@
 //! SI units throughout. The same input gives the same bits on every machine.
 
 mod assembly;
+mod counters;
 mod element;
 mod error;
+mod fast;
 mod network;
 mod path;
 mod section;
@@ -24,9 +26,11 @@ mod shape;
 mod state;
 mod stepping;
 
+pub use counters::Counters;
 pub use error::{NetworkError, PathError, Status};
+pub use fast::{CurveSolver, Response};
 pub use network::{Beam, Drive, Joint, Network, Node, Rotation, Settings, Support, Theory};
-pub use path::{Counters, Path, trace};
+pub use path::{Path, trace};
 pub use section::Section;
 pub use shape::{Shape, ShapeError};
 pub use state::{BeamState, Face, NodeState, PeakStress, Point};

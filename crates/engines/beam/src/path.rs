@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::{
     assembly::{Model, Resolution},
+    counters::Counters,
     error::{NetworkError, PathError, Status},
     network::{Network, Settings},
     state::Point,
@@ -26,21 +27,6 @@ fn first_degree(accuracy: f64) -> usize {
 
 /// The first resolution only serves the comparison: it visits about this many stations.
 const COMPARED: usize = 12;
-
-/// Work done, the same on every machine.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// Newton iterations.
-    pub newton_iterations: u64,
-    /// Evaluations of the equations of all beams.
-    pub residual_evaluations: u64,
-    /// Factorisations of the system of the network.
-    pub factorisations: u64,
-    /// Steps accepted.
-    pub steps: u64,
-    /// Steps rejected and repeated with half the length.
-    pub rejected_steps: u64,
-}
 
 /// An equilibrium path from rest.
 #[derive(Debug, Clone)]
@@ -161,7 +147,7 @@ fn halves(n: usize) -> f64 {
     (0..n).fold(1.0, |product, _| 0.5 * product)
 }
 
-fn check_stations(stations: &[f64]) -> Result<(), NetworkError> {
+pub(crate) fn check_stations(stations: &[f64]) -> Result<(), NetworkError> {
     let mut before = -1.0;
     for (index, &s) in stations.iter().enumerate() {
         // Written so that NaN fails. The first may be 0.

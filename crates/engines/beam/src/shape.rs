@@ -1,11 +1,13 @@
 //! Intrinsic shapes: the angle of an unloaded beam as a polynomial of its arc length.
 
 use std::fmt;
+use std::sync::LazyLock;
 
 use forcewright_base::{maths, quadrature::GaussLegendre};
 
 /// Points of the rule used on each panel of a shape integral.
 const PANEL_POINTS: usize = 16;
+static PANEL_RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(PANEL_POINTS));
 /// Largest change of angle on a panel, rad, for which the rule is accurate to rounding.
 const PANEL_TURN_RAD: f64 = 2.0;
 
@@ -190,7 +192,7 @@ fn turn_bound(angle_rad: &[f64]) -> f64 {
 
 /// ∫ (cos θ, sin θ) over [0, u] in panels on which θ changes little.
 fn integrate_direction(u: f64, turn_rad: f64, angle: impl Fn(f64) -> f64) -> [f64; 2] {
-    let rule = GaussLegendre::new(PANEL_POINTS);
+    let rule = &*PANEL_RULE;
     let mut panels = 1.0;
     while panels * PANEL_TURN_RAD < turn_rad * u {
         panels += 1.0;

@@ -93,6 +93,10 @@ impl BeamInfo {
         Self { shape: beam.shape.clone(), section: beam.section, theory, start_m }
     }
 
+    pub(crate) fn section(&self) -> &Section {
+        &self.section
+    }
+
     /// Stress of the beam bent uniformly by 1 rad, Pa.
     pub(crate) fn stress_unit_pa(&self) -> f64 {
         self.section.bending_stiffness_n_m2() / self.shape.length_m() * self.section.face_stress_per_moment_per_m3()

@@ -2,9 +2,9 @@
 
 use crate::{
     assembly::{Model, Resolution, System},
+    counters::Counters,
     element::recover,
     error::Status,
-    path::Counters,
     state::{BeamState, NodeState, Point, Sampling, Solved},
 };
 

@@ -2,40 +2,9 @@
 
 mod common;
 
-use common::{POM, TABLE3_NODES, TABLE3_SHAPES, add, half_mechanism, near};
+use common::{POM, SplitMix, near, random_network};
 use forcewright_base::{dense::Lu, maths};
-use forcewright_beam::{Network, Path, Settings, Shape, ShapeError, Status, Theory, trace};
-
-/// Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014.
-struct SplitMix(u64);
-
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in [−range, range].
-    fn around(&mut self, range: f64) -> f64 {
-        range * (2.0 * (self.next() >> 11) as f64 / (1_u64 << 53) as f64 - 1.0)
-    }
-}
-
-const ENDS: [(usize, usize); 4] = [(0, 2), (1, 2), (2, 3), (3, 4)];
-
-/// Nodes moved by up to 3 mm, bends by up to 1.5 rad.
-fn random_network(random: &mut SplitMix, nodes_mm: f64, bend: f64) -> Result<Network, ShapeError> {
-    let nodes = TABLE3_NODES.map(|p| p.map(|x| x * 1e-2 + random.around(nodes_mm * 1e-3)));
-    let mut shapes = Vec::new();
-    for (i, c) in TABLE3_SHAPES.iter().enumerate() {
-        let bends = [c[1] + random.around(bend), c[2] + random.around(bend)];
-        shapes.push(Shape::from_chord(add(nodes[ENDS[i].1], nodes[ENDS[i].0], -1.0), &bends)?);
-    }
-    Ok(half_mechanism(nodes, shapes.try_into().expect("four"), POM))
-}
+use forcewright_beam::{Network, Path, Settings, Shape, Status, Theory, trace};
 
 fn finite(path: &Path) -> bool {
     path.points.iter().all(|p| {

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 #![allow(clippy::approx_constant, reason = "the paper prints 1.5707")]
 
-use forcewright_beam::{Beam, Drive, Joint, Network, Node, Path, Rotation, Section, Settings, Shape, Support, Theory, trace};
+use forcewright_beam::{Beam, Drive, Joint, Network, Node, Path, Rotation, Section, Settings, Shape, ShapeError, Support, Theory, trace};
 
 /// Material and section of Table 2: `E = 2 GPa`, w = 1 mm, t = 10 mm. Poisson's ratio of polyoxymethylene is not in the paper.
 pub(crate) const POM: Section = Section { young_pa: 2e9, thickness_m: 1e-3, depth_m: 1e-2, poisson: Some(0.35) };
@@ -99,4 +99,35 @@ pub(crate) fn near(got: f64, want: f64, tolerance: f64, what: &str) {
 #[track_caller]
 pub(crate) fn close(got: f64, want: f64, absolute: f64, what: &str) {
     assert!((got - want).abs() <= absolute, "{what}: got {got:.15e}, want {want:.15e}");
+}
+
+/// Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014.
+pub(crate) struct SplitMix(pub(crate) u64);
+
+impl SplitMix {
+    pub(crate) fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in [−range, range].
+    pub(crate) fn around(&mut self, range: f64) -> f64 {
+        range * (2.0 * (self.next() >> 11) as f64 / (1_u64 << 53) as f64 - 1.0)
+    }
+}
+
+pub(crate) const ENDS: [(usize, usize); 4] = [(0, 2), (1, 2), (2, 3), (3, 4)];
+
+/// Nodes moved by up to 3 mm, bends by up to 1.5 rad.
+pub(crate) fn random_network(random: &mut SplitMix, nodes_mm: f64, bend: f64) -> Result<Network, ShapeError> {
+    let nodes = TABLE3_NODES.map(|p| p.map(|x| x * 1e-2 + random.around(nodes_mm * 1e-3)));
+    let mut shapes = Vec::new();
+    for (i, c) in TABLE3_SHAPES.iter().enumerate() {
+        let bends = [c[1] + random.around(bend), c[2] + random.around(bend)];
+        shapes.push(Shape::from_chord(add(nodes[ENDS[i].1], nodes[ENDS[i].0], -1.0), &bends)?);
+    }
+    Ok(half_mechanism(nodes, shapes.try_into().expect("four"), POM))
 }
