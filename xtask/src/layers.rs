@@ -7,7 +7,7 @@
 //! | 2 | `crates/contract`, `crates/outputs/*` | contract: layers 0 and 1; outputs: base and model |
 //! | 3 | `crates/mechanisms/*` | layers 0 to 2 without outputs |
 //! | 4 | `crates/forcewright` | layers 0 to 3 |
-//! | 5 | `apps/*` | layers 0 to 4 |
+//! | 5 | `apps/*`, `benchmarks` | layers 0 to 4 |
 //! | – | `xtask` | none of them |
 
 use std::collections::BTreeMap;
@@ -45,6 +45,8 @@ impl<'a> Room<'a> {
             ["crates", "mechanisms", name] => Some(Self::Mechanism(name)),
             ["crates", "forcewright"] => Some(Self::Library),
             ["apps", name] => Some(Self::App(name)),
+            // Benches measure from outside, as an application would.
+            ["benchmarks"] => Some(Self::App("benchmarks")),
             ["xtask"] => Some(Self::Tasks),
             _ => None,
         }

@@ -75,7 +75,8 @@ pub struct ReproductionRow {
     pub ours: f64,
     /// Unit of both.
     pub unit: String,
-    /// Largest difference that the printed digits, or the stated reason, explain: absolute, in the unit.
+    /// Largest difference that the printed digits, or the stated reason, explain: absolute, in the unit. A printed number without it
+    /// departs for a reason that is not known.
     pub explained: Option<f64>,
     /// Why they differ, or why the paper's number is not reached.
     pub why: String,

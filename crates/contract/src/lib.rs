@@ -2,6 +2,8 @@
 //! traits that a family implements.
 
 pub mod codes;
+#[cfg(feature = "conformance")]
+pub mod conformance;
 pub mod describe;
 pub mod family;
 pub mod header;

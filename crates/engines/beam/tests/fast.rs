@@ -63,6 +63,9 @@ fn random_designs_agree_with_the_general_path() {
                 assert_eq!(response.instability, Some(0), "{index}");
             }
         }
+        // The accuracy rests on an estimate: it may be exceeded now and then, not by much, and not often.
+        assert!(all >= 140 && over <= 3 && worst < 2.0, "{accuracy:e}: {over} of {all}, worst {worst}");
+        assert!(general <= 3, "{accuracy:e}: {general} of {all} by the general path");
         ratios.sort_by(f64::total_cmp);
         println!(
             "{accuracy:e}: {all} designs, {general} by the general path, {over} over the accuracy, worst force {worst:.2}, stress {worst_stress:.1} of it; error over estimate: median {:.2}, largest {:.2}",
@@ -79,7 +82,7 @@ fn time_of_curves() {
     let stations: Vec<f64> = (1..=34).map(|i| 13.6e-3 * f64::from(i) / 34.0).collect();
     let mut solver = CurveSolver::new();
     for theory in [Theory::Inextensible, Theory::Reissner] {
-        for accuracy in [1e-3, 1e-4, 1e-5, 1e-8] {
+        for accuracy in accuracies() {
             let settings = Settings { theory, accuracy, ..Settings::default() };
             let mut best = f64::INFINITY;
             for _ in 0..rounds() {
@@ -96,4 +99,8 @@ fn time_of_curves() {
 
 fn rounds() -> usize {
     std::env::var("ROUNDS").ok().and_then(|r| r.parse().ok()).unwrap_or(7)
+}
+
+fn accuracies() -> Vec<f64> {
+    std::env::var("ACCURACY").ok().and_then(|a| a.parse().ok()).map_or_else(|| vec![1e-3, 1e-4, 1e-5, 1e-8], |a| vec![a])
 }

@@ -50,9 +50,15 @@ impl Behaviour {
     pub fn of(design: &Design, progress: Progress<'_>) -> Result<Self, NetworkError> {
         let settings = Settings { theory: design.theory, accuracy: design.accuracy, ..Settings::default() };
         let mut result = None;
+        // A second attempt begins anew, but progress never goes back.
+        let mut furthest = 0.0_f64;
+        let mut progress = |fraction: f64| {
+            furthest = furthest.max(fraction);
+            progress(furthest)
+        };
         for count in STATIONS {
             let stations: Vec<f64> = (0..=count).map(|i| design.travel_m * i as f64 / count as f64).collect();
-            let path = trace(&design.network, &stations, &settings, progress)?;
+            let path = trace(&design.network, &stations, &settings, &mut progress)?;
             let behaviour = Self::from_path(path, design.copies());
             let enough = behaviour.interpolation_error <= INTERPOLATION || !behaviour.whole;
             result = Some(behaviour);
@@ -78,12 +84,12 @@ impl Behaviour {
         let of = |point: &Point| point.peak_stress().map(|(beam, peak)| LargestStress { at_m: point.displacement, beam, peak });
         let stations: Vec<LargestStress> = self.path.points.iter().filter_map(of).collect();
         let best = (0..stations.len()).reduce(|b, i| if stations[i].peak.stress_pa > stations[b].peak.stress_pa { i } else { b })?;
-        let inside = best > 0 && best + 1 < stations.len();
-        if !inside {
+        let falling: Vec<f64> = stations.iter().map(|s| -s.peak.stress_pa).collect();
+        if !may_be_inside(&falling, best) {
             return stations.get(best).copied();
         }
         let value = |x: f64| self.path.at(x).ok().and_then(|p| of(&p));
-        let (left, right) = (stations[best - 1].at_m, stations[best + 1].at_m);
+        let (left, right) = (stations[best.saturating_sub(1)].at_m, stations[(best + 1).min(stations.len() - 1)].at_m);
         let found = forcewright_base::roots::minimise(|x| value(x).map_or(f64::NAN, |s| -s.peak.stress_pa), left, right, 1e-6 * right);
         value(found.x).filter(|s| s.peak.stress_pa > stations[best].peak.stress_pa).or(stations.get(best).copied())
     }
@@ -99,26 +105,65 @@ impl Behaviour {
 
     /// Least tangent stiffness of the whole layout over the path, N/m, and where, m.
     pub fn least_stiffness(&self) -> Option<(f64, f64)> {
+        self.extreme_stiffness(1.0)
+    }
+
+    /// Largest tangent stiffness of the whole layout over the path, N/m, and where, m.
+    pub fn largest_stiffness(&self) -> Option<(f64, f64)> {
+        self.extreme_stiffness(-1.0).map(|(value, at)| (-value, at))
+    }
+
+    /// Least value of the stiffness times `sign`, N/m, refined between stations, and where, m.
+    fn extreme_stiffness(&self, sign: f64) -> Option<(f64, f64)> {
         let points = &self.path.points;
-        let best = (0..points.len()).reduce(|b, i| if points[i].stiffness < points[b].stiffness { i } else { b })?;
-        let station = (self.copies * points[best].stiffness, points[best].displacement);
-        if best == 0 || best + 1 >= points.len() {
+        let values: Vec<f64> = points.iter().map(|p| sign * self.copies * p.stiffness).collect();
+        let best = (0..values.len()).reduce(|b, i| if values[i] < values[b] { i } else { b })?;
+        let station = (values[best], points[best].displacement);
+        if !may_be_inside(&values, best) {
             return Some(station);
         }
-        let value = |x: f64| self.path.at(x).map_or(f64::NAN, |p| p.stiffness);
-        let (left, right) = (points[best - 1].control, points[best + 1].control);
-        let found = forcewright_base::roots::minimise(value, left, right, 1e-6 * right);
-        Some(if self.copies * found.value < station.0 { (self.copies * found.value, found.x) } else { station })
+        let value = |x: f64| self.path.at(x).map_or(f64::NAN, |p| sign * self.copies * p.stiffness);
+        let (left, right) = (best.saturating_sub(1), (best + 1).min(points.len() - 1));
+        let right = points[right].control;
+        let found = forcewright_base::roots::minimise(value, points[left].control, right, 1e-6 * right);
+        Some(if found.value < station.0 { (found.value, found.x) } else { station })
+    }
+
+    /// First local maximum of the force and first minimum after it, found on the curve and placed where the tangent vanishes: next to a
+    /// limit point the force turns too quickly to be read between stations.
+    pub fn extrema(&self) -> Extrema {
+        let Some(curve) = &self.curve else { return Extrema { max: None, min: None } };
+        let Extrema { max, min } = curve.extrema();
+        Extrema { max: max.map(|m| self.placed(m)), min: min.map(|m| self.placed(m)) }
+    }
+
+    /// The extremum near the one that was read off the curve; that one itself if the tangent does not change its sign around it.
+    fn placed(&self, read: (f64, f64)) -> (f64, f64) {
+        let points = &self.path.points;
+        let after = points.partition_point(|p| p.control <= read.0).clamp(1, points.len() - 1);
+        let stiffness = |x: f64| self.path.at(x).map_or(f64::NAN, |p| p.stiffness);
+        let (left, right) = (points[after - 1].control, points[after].control);
+        let exact = forcewright_base::roots::root(stiffness, left, right, 1e-14 * right).ok();
+        exact.and_then(|x| Some((x, self.copies * self.path.at(x).ok()?.force))).unwrap_or(read)
     }
 
     /// Where a force-driven device would jump: from the first local maximum, to the displacement beyond it that carries the same force
     /// again, if the path reaches it.
     pub fn jump(&self) -> Option<(f64, Option<f64>)> {
         let curve = self.curve.as_ref()?;
-        let (from, level) = curve.extrema().max?;
-        let slack = 1e-6 * curve.end();
-        Some((from, curve.crossings(level).into_iter().find(|x| *x > from + slack)))
+        let (from, level) = self.extrema().max?;
+        // The force falls first: the same level is passed again only beyond the minimum.
+        let to = curve.extrema().min.and_then(|(dip, _)| curve.crossings(level).into_iter().find(|x| *x > dip));
+        Some((from, to))
     }
+}
+
+/// Whether a value below that of the least station may lie beside it: between two neighbours, or next to an end where the parabola
+/// through three stations falls inwards.
+fn may_be_inside(values: &[f64], least: usize) -> bool {
+    let n = values.len();
+    let falls = |end: f64, next: f64, after: f64| -3.0 * end + 4.0 * next - after < 0.0;
+    n >= 3 && (least > 0 || falls(values[0], values[1], values[2])) && (least + 1 < n || falls(values[n - 1], values[n - 2], values[n - 3]))
 }
 
 /// What is needed again for checks and pictures.
@@ -163,7 +208,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m.set("mass", design.density_kg_per_m3.map(|density| density * design.copies() * volume_m3(design)));
     let Some(curve) = &behaviour.curve else { return m };
     m.set("stiffness_initial", behaviour.path.points.first().map(|p| behaviour.copies * p.stiffness));
-    let Extrema { max, min } = curve.extrema();
+    let Extrema { max, min } = behaviour.extrema();
     m.set("force_local_max", max.map(|(_, f)| f));
     m.set("force_local_max_at", max.map(|(x, _)| x));
     m.set("force_local_min", min.map(|(_, f)| f));

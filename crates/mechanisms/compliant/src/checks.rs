@@ -1,6 +1,7 @@
 //! Requirements against what was found.
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
+use forcewright_beam::Theory;
 use forcewright_model::{Check, CheckState, Sense};
 
 use crate::analysis::{Behaviour, Measured, display_unit};
@@ -83,6 +84,24 @@ fn percent() -> Unit {
     Unit::parse("%").unwrap_or_else(|_| Unit::si(Dimension::Ratio))
 }
 
+/// A positive value cut to so many digits: advice that is followed to the letter must not overshoot.
+fn rounded_down(value: f64, digits: i32) -> f64 {
+    let place = forcewright_base::maths::log10(value).floor();
+    if !place.is_finite() {
+        return value;
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "the decimal exponent of a double")]
+    let shift = digits - 1 - place as i32;
+    let ten = |n: i32| forcewright_base::maths::powi(10.0, n);
+    // Multiplying by a power of ten and dividing by it again gives the decimal; by its inverse it may not.
+    if shift >= 0 { (value * ten(shift)).floor() / ten(shift) } else { (value / ten(-shift)).floor() * ten(-shift) }
+}
+
+/// A displacement for people, cut to four digits.
+fn shown_below(x_m: f64, unit: &Unit) -> String {
+    format!("{} {}", format_number(rounded_down(unit.from_si(x_m), 4), 4), unit.pretty())
+}
+
 /// Why a check over the whole travel has no value.
 const UNREACHED: &str = "the path ends before the full travel; see the status";
 
@@ -97,22 +116,10 @@ impl Context<'_> {
         let stroke = format_si(window_m, &units.displacement, 4);
         let around = nominal.map_or_else(|| "around a free level".to_owned(), |f| format!("around {}", format_si(f, &units.force, 4)));
         let over = if window_m > 0.0 { format!(" over the best {stroke}") } else { String::new() };
-        let fix = match (best, nominal, curve) {
-            (Some((interval, deviation)), Some(level), Some(curve)) => {
-                let (hi, lo) = curve.extent(interval);
-                let middle = f64::midpoint(hi, lo);
-                let free = (hi - lo) / (hi + lo);
-                let scale = level / middle;
-                format!(
-                    "the best stroke needs ±{} %; its own level is {} with ±{} %. Force is proportional to `design.depth`: multiply it by {}",
-                    format_number(100.0 * deviation, 3),
-                    format_si(middle, &units.force, 4),
-                    format_number(100.0 * free, 3),
-                    format_number(scale, 4),
-                )
-            }
-            _ => "ask for a shorter `travel` or a wider `band`, or change the shape".to_owned(),
-        };
+        let fix = best
+            .zip(nominal)
+            .and_then(|((_, deviation), level)| self.depth_advice(level, band, deviation))
+            .unwrap_or_else(|| "ask for a shorter `travel` or a wider `band`, or change the shape".to_owned());
         let missing =
             if self.behaviour.whole { format!("the required stroke of {stroke} is longer than the travel") } else { UNREACHED.to_owned() };
         let comparison = Comparison {
@@ -130,6 +137,26 @@ impl Context<'_> {
             missing,
         };
         Some(comparison.judge())
+    }
+
+    /// What `design.depth` can do for a missed band around a nominal level: move the flattest stroke to that level.
+    fn depth_advice(&self, level: f64, band: f64, deviation: f64) -> Option<String> {
+        let curve = self.behaviour.curve.as_ref()?;
+        let flattest = match self.requirements.travel_m {
+            Some(window_m) => curve.best_window(window_m, None).filter(|(_, d)| d.is_finite())?.0,
+            None => curve.longest_flat(band)?,
+        };
+        let (hi, lo) = curve.extent(flattest);
+        let (middle, free) = (f64::midpoint(hi, lo), (hi - lo) / (hi + lo));
+        let rest =
+            if free > band { "; that alone is not enough: a wider `band`, a shorter `travel` or another shape is needed too" } else { "" };
+        Some(format!(
+            "the best stroke needs ±{} %; the flattest one has its own level of {} with ±{} %. Force is proportional to `design.depth`: multiply it by {}{rest}",
+            format_number(100.0 * deviation, 3),
+            format_si(middle, &self.design.units.force, 4),
+            format_number(100.0 * free, 3),
+            format_number(level / middle, 5),
+        ))
     }
 
     /// COMP003: the longest stroke within the band.
@@ -173,11 +200,13 @@ impl Context<'_> {
             let beam = self.design.beam_names.get(s.beam).map_or("?", String::as_str);
             format!(" (beam {beam}, u = {}, Δ = {})", format_number(s.peak.u, 3), show(s.at_m))
         });
-        let until = self
-            .measured
-            .get("travel_at_allowable_stress")
-            .map_or_else(String::new, |x| format!("keep `load.travel` below {}, or ", show(x)));
+        let until = self.measured.get("travel_at_allowable_stress").map_or_else(String::new, |x| {
+            format!("keep `load.travel` at or below {}, or ", shown_below(x, &self.design.units.displacement))
+        });
         let ratio = found.zip(self.design.allowable_pa()).map_or(1.0, |(s, allowed)| s.peak.stress_pa / allowed);
+        // Stretching changes with the thickness at equal bending stiffness, and the shape with it: 2 % to spare.
+        let spare = if self.design.theory == Theory::Reissner { 0.98 } else { 1.0 };
+        let thinner = rounded_down(spare / ratio, 3);
         let basis = match wanted {
             StressLimit::SafetyFactor(factor) => {
                 format!("yield stress over {}; Lan, Wang & Chen 2010, eq. (5) and constraint (iv)", format_number(factor, 4))
@@ -196,9 +225,9 @@ impl Context<'_> {
             scale: 1.0,
             basis,
             fix: format!(
-                "{until}make the beams thinner: stress follows `design.thickness` (× {}), and `depth` × {} keeps the force",
-                format_number(1.0 / ratio, 3),
-                format_number(ratio * ratio * ratio, 3)
+                "{until}make all beams thinner: stress follows the thickness (× {}), and `design.depth` × {} keeps the force",
+                format_number(thinner, 3),
+                format_number(1.0 / (thinner * thinner * thinner), 4)
             ),
             missing: if self.design.yield_pa.is_none() {
                 "the yield stress is not known; give `material.yield_stress`".to_owned()
@@ -249,16 +278,13 @@ impl Context<'_> {
             .judge(),
         ];
         if let Some(limit) = self.requirements.stiffness_max {
-            let largest = self
-                .behaviour
-                .whole
-                .then(|| self.behaviour.path.points.iter().map(|p| self.behaviour.copies * p.stiffness).fold(f64::NEG_INFINITY, f64::max));
+            let largest = self.behaviour.largest_stiffness().filter(|_| self.behaviour.whole);
             all.push(
                 slope(
                     "COMP005",
                     "stiffness_max",
-                    "Largest stiffness".to_owned(),
-                    largest,
+                    format!("Largest stiffness{}", largest.map_or_else(String::new, |(_, x)| format!(" (Δ = {})", show(x)))),
+                    largest.map(|(k, _)| k),
                     limit,
                     Sense::AtMost,
                     "change the shape, or allow it".to_owned(),

@@ -266,6 +266,16 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
                 .help("give `safety_factor = 1.5` or `max = \"50 MPa\"`"),
         );
     }
+    if let (Some(travel), None) = (&requirements.travel, &requirements.force.band) {
+        // A missing band inside `[requirements.force]` has been reported by the reader.
+        if requirements.force.present.is_none() {
+            diagnostics.push(
+                Diagnostic::error("E0302", travel.span, "`travel` needs a force band")
+                    .label("a stroke inside which band?")
+                    .help("add `force = { band = \"5 %\" }`, with `nominal = \"…\"` where the level matters"),
+            );
+        }
+    }
     let mut limits = Vec::new();
     for (index, bounds) in requirements.limits.bounds.iter().enumerate() {
         if let Some(section) = &bounds.present {

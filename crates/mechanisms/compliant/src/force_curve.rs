@@ -179,8 +179,13 @@ impl ForceCurve {
 
     /// Largest and smallest force on an interval.
     pub fn extent(&self, interval: Interval) -> (f64, f64) {
+        self.extent_with(&self.critical(), interval)
+    }
+
+    /// The same with the extrema known.
+    fn extent_with(&self, critical: &[f64], interval: Interval) -> (f64, f64) {
         let ends = [interval.start, interval.end];
-        let inner = self.critical().into_iter().filter(|x| (interval.start..=interval.end).contains(x));
+        let inner = critical.iter().copied().filter(|x| (interval.start..=interval.end).contains(x));
         let values = ends.into_iter().chain(inner).map(|x| self.force(x));
         values.fold((f64::NEG_INFINITY, f64::INFINITY), |(hi, lo), f| (hi.max(f), lo.min(f)))
     }
@@ -238,8 +243,9 @@ impl ForceCurve {
         if length > self.end() {
             return None;
         }
+        let critical = self.critical();
         let deviation = |start: f64| {
-            let (hi, lo) = self.extent(Interval { start, end: start + length });
+            let (hi, lo) = self.extent_with(&critical, Interval { start, end: start + length });
             match nominal {
                 Some(level) => (hi / level - 1.0).abs().max((lo / level - 1.0).abs()),
                 // Half width β of the narrowest band with a free level: (max − min)/(max + min).

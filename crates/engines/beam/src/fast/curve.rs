@@ -499,14 +499,13 @@ fn linearise_all<const M: usize, const Q: usize>(
     condensed: &mut Vec<Condensed<M>>,
     net: &mut Net,
 ) -> Result<(), GiveUp> {
-    condensed.clear();
+    condensed.resize_with(groups.len(), Condensed::default);
     net.clear();
     for (group, beams) in groups.iter().enumerate() {
         let (ends, apart) = net.ends(group, x);
         inner[group].ends = ends;
-        let four = linearise(tables, beams, &inner[group], apart).map_err(|_| GiveUp::Unsafe)?;
-        net.add(group, &four);
-        condensed.push(four);
+        linearise(tables, beams, &inner[group], apart, &mut condensed[group]).map_err(|_| GiveUp::Unsafe)?;
+        net.add(group, &condensed[group]);
     }
     net.solve().map_err(|_| GiveUp::Unsafe)
 }

@@ -130,9 +130,10 @@ pub(crate) fn linearise<const M: usize, const Q: usize>(
     beams: &Beams<Q>,
     at: &Unknowns<M>,
     apart: [Lane; 2],
-) -> Result<Condensed<M>, NeedsPivoting> {
-    let integrals = integrate(tables, beams, at);
-    condense(integrals, beams, at, apart)
+    out: &mut Condensed<M>,
+) -> Result<(), NeedsPivoting> {
+    let mut integrals = integrate(tables, beams, at);
+    condense(&mut integrals, beams, at, apart, out)
 }
 
 #[allow(clippy::too_many_lines, reason = "long: one loop over the points and the sums it feeds, in the order of the formulas")]
@@ -296,15 +297,17 @@ fn solve<const M: usize>(inner: &[[Lane; M]; M], x: &mut [[Lane; 5]; M]) {
 }
 
 fn condense<const M: usize, const Q: usize>(
-    mut sums: Integrals<M>,
+    sums: &mut Integrals<M>,
     beams: &Beams<Q>,
     at: &Unknowns<M>,
     apart: [Lane; 2],
-) -> Result<Condensed<M>, NeedsPivoting> {
+    out: &mut Condensed<M>,
+) -> Result<(), NeedsPivoting> {
     let mut negative = [0; LANES];
     factor(&mut sums.inner, beams.bending, &mut negative)?;
-    let mut answer = sums.outer;
-    solve(&sums.inner, &mut answer);
+    out.answer = sums.outer;
+    solve(&sums.inner, &mut out.answer);
+    let answer = &out.answer;
     // The Schur complement by (φ_A, φ_B, H, V); lower triangle, and the gradient.
     let mut s = [[Lane::ZERO; 4]; 4];
     let mut g = [sums.ends_residual[0], sums.ends_residual[1], sums.gap[0], sums.gap[1]];
@@ -350,7 +353,7 @@ fn condense<const M: usize, const Q: usize>(
     let inverse = Lane::splat(1.0) / determinant;
     let flexibility = [[c11 * inverse, -(c01 * inverse)], [-(c01 * inverse), c00 * inverse]];
     let coupling = [[s[2][0], s[2][1]], [s[3][0], s[3][1]]];
-    let mut by_rotation = [[Lane::ZERO; 2]; 2];
+    let by_rotation = &mut out.by_rotation;
     let mut closing = [Lane::ZERO; 2];
     let gap = [g[2] + apart[0], g[3] + apart[1]];
     for i in 0..2 {
@@ -368,10 +371,35 @@ fn condense<const M: usize, const Q: usize>(
         moment[i] -= coupling[0][i] * closing[0] + coupling[1][i] * closing[1];
     }
     // By the position of B: d(force)/du = −C⁻¹, and by rotations −C⁻¹ K.
-    let translation = [[-flexibility[0][0], -flexibility[0][1]], [-flexibility[1][0], -flexibility[1][1]]];
-    let mixed = [[-by_rotation[0][0], -by_rotation[0][1]], [-by_rotation[1][0], -by_rotation[1][1]]];
-    let pull = [at.force[0] - closing[0], at.force[1] - closing[1]];
-    Ok(Condensed { rotation, mixed, translation, moment, pull, answer, flexibility, by_rotation, closing, extra: sums.extra, negative })
+    out.translation = [[-flexibility[0][0], -flexibility[0][1]], [-flexibility[1][0], -flexibility[1][1]]];
+    out.mixed = [[-by_rotation[0][0], -by_rotation[0][1]], [-by_rotation[1][0], -by_rotation[1][1]]];
+    out.pull = [at.force[0] - closing[0], at.force[1] - closing[1]];
+    out.rotation = rotation;
+    out.moment = moment;
+    out.flexibility = flexibility;
+    out.closing = closing;
+    out.extra = sums.extra;
+    out.negative = negative;
+    Ok(())
+}
+
+impl<const M: usize> Default for Condensed<M> {
+    fn default() -> Self {
+        let (two, four) = ([Lane::ZERO; 2], [[Lane::ZERO; 2]; 2]);
+        Self {
+            rotation: four,
+            mixed: four,
+            translation: four,
+            moment: two,
+            pull: two,
+            answer: [[Lane::ZERO; 5]; M],
+            flexibility: four,
+            by_rotation: four,
+            closing: two,
+            extra: [Lane::ZERO; EXTRA],
+            negative: [0; LANES],
+        }
+    }
 }
 
 impl<const M: usize> Condensed<M> {

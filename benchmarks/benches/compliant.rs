@@ -1,0 +1,96 @@
+//! The work that users of compliant mechanisms wait for: `cargo bench -p forcewright-benchmarks`.
+
+use divan::{Bencher, black_box};
+use forcewright::compliant::{Behaviour, Compliant, Design, Spec, measure};
+use forcewright::contract::family::Mechanism;
+use forcewright::contract::project::Project;
+use forcewright::contract::read;
+use forcewright::{Choices, Loaded, gallery};
+use forcewright_beam::{Settings, Theory, trace};
+
+fn main() {
+    divan::main();
+}
+
+fn text() -> &'static str {
+    gallery::find("compliant/lan-table3").expect("in the gallery").text
+}
+
+fn design() -> Design {
+    let mut project = Project::from_text("lan-table3.toml", text(), &Choices::default());
+    let mut spec: Spec = read::read(&project.tree, project.root, &mut project.diagnostics);
+    Compliant::resolve(&mut spec, &mut project.diagnostics).expect("the example is understood")
+}
+
+/// Relative errors asked for: screening, optimisation, reports.
+const ACCURACIES: [f64; 3] = [1e-3, 1e-5, 1e-8];
+
+/// Force, stiffness and stress of the four beams of Table 3 from rest to 13.6 mm, from a cold start.
+fn path(bencher: Bencher<'_, '_>, stations: u32, theory: Theory, accuracy: f64) {
+    let design = design();
+    let last = stations - 1;
+    let stations: Vec<f64> = (0..stations).map(|i| 13.6e-3 * f64::from(i) / f64::from(last)).collect();
+    let settings = Settings { theory, accuracy, ..Settings::default() };
+    bencher.bench_local(|| {
+        let path = trace(black_box(&design.network), &stations, &settings, &mut |_| true).expect("a network");
+        path.points.iter().filter_map(forcewright_beam::Point::peak_stress).map(|(_, peak)| peak.stress_pa).fold(0.0, f64::max)
+    });
+}
+
+#[divan::bench(args = ACCURACIES, sample_count = 50)]
+fn inextensible_34_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
+    path(bencher, 34, Theory::Inextensible, accuracy);
+}
+
+#[divan::bench(args = ACCURACIES, sample_count = 50)]
+fn inextensible_137_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
+    path(bencher, 137, Theory::Inextensible, accuracy);
+}
+
+#[divan::bench(args = ACCURACIES, sample_count = 50)]
+fn reissner_34_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
+    path(bencher, 34, Theory::Reissner, accuracy);
+}
+
+#[divan::bench(args = ACCURACIES, sample_count = 50)]
+fn reissner_137_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
+    path(bencher, 137, Theory::Reissner, accuracy);
+}
+
+/// Path at the stations of a report, with the refinement of the interpolation.
+#[divan::bench(sample_count = 50)]
+fn behaviour(bencher: Bencher<'_, '_>) {
+    let design = design();
+    bencher.bench_local(|| Behaviour::of(black_box(&design), &mut |_| true).expect("a network"));
+}
+
+/// The metrics of a behaviour: intervals, extrema, the largest stress between stations.
+#[divan::bench(sample_count = 50)]
+fn metrics(bencher: Bencher<'_, '_>) {
+    let design = design();
+    let behaviour = Behaviour::of(&design, &mut |_| true).expect("a network");
+    bencher.bench_local(|| measure(&design, black_box(&behaviour)));
+}
+
+/// The page of a result that is there.
+#[divan::bench(sample_count = 50)]
+fn page(bencher: Bencher<'_, '_>) {
+    let loaded = Loaded::from_text("lan-table3.toml", text(), &Choices::default()).map_err(|e| e.render(false)).expect("understood");
+    let report = loaded.solve("lan-table3.toml", "", &mut |_| true);
+    bencher.bench_local(|| forcewright::report::html::page(black_box(&report)));
+}
+
+/// From the text of a project file to a design.
+#[divan::bench]
+fn read_and_resolve() -> Design {
+    black_box(design())
+}
+
+/// Everything that `forcewright solve` does but writing files: reading, solving, checking, the page.
+#[divan::bench(sample_count = 30)]
+fn solve_with_report() -> String {
+    let loaded =
+        Loaded::from_text("lan-table3.toml", black_box(text()), &Choices::default()).map_err(|e| e.render(false)).expect("understood");
+    let report = loaded.solve("lan-table3.toml", "", &mut |_| true);
+    forcewright::report::html::page(&report)
+}
