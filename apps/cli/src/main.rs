@@ -14,9 +14,11 @@ fn main() -> ExitCode {
         Ok(matches) => matches,
         Err(error) => {
             // `--help` and `--version` come here too, with exit code 0.
-            let code = if error.use_stderr() { exit::USAGE } else { exit::MET };
-            let _ = error.print();
-            return ExitCode::from(code);
+            if !error.use_stderr() {
+                let _ = error.print();
+                return ExitCode::from(exit::MET);
+            }
+            return ExitCode::from(not_understood(&error));
         }
     };
     let code = match matches.subcommand() {
@@ -30,4 +32,18 @@ fn main() -> ExitCode {
         _ => commands::welcome(),
     };
     ExitCode::from(code)
+}
+
+/// Reports a call that clap refuses, with a code as every error has.
+fn not_understood(error: &clap::Error) -> u8 {
+    let text = error.render().to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text).trim_end();
+    if std::env::args_os().any(|a| a == "--json") {
+        let message = text.lines().next().unwrap_or_default();
+        let diagnostics = serde_json::json!([{ "code": "E0125", "severity": "error", "message": message, "help": "forcewright --help" }]);
+        output::print(&output::json_text(&output::refusal(&diagnostics)));
+    }
+    let shown: Vec<_> = text.lines().map(forcewright::base::text::visible).collect();
+    output::narrate(&format!("error[E0125]: {}\n", shown.join("\n")));
+    exit::USAGE
 }

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+
+use crate::text::visible;
 
 /// Index of a [`Source`] in its [`Sources`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -173,21 +175,33 @@ impl Diagnostics {
         all
     }
 
+    /// How many errors there are.
+    pub fn errors(&self) -> usize {
+        self.list.iter().filter(|d| d.severity == Severity::Error).count()
+    }
+
     /// Only the warnings, in file order.
     pub fn warnings(&self) -> Vec<&Diagnostic> {
         self.in_file_order().into_iter().filter(|d| d.severity == Severity::Warning).collect()
     }
 
-    /// Text for a terminal: every diagnostic with its lines of source, underlined.
+    /// Text for a terminal: every diagnostic with its lines of source, underlined; the first [`MOST_SHOWN`] of them.
     pub fn render(&self, sources: &Sources, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let mut out = String::new();
-        for diagnostic in self.in_file_order() {
+        for diagnostic in self.in_file_order().into_iter().take(MOST_SHOWN) {
             let _ = writeln!(out, "{}\n", render_one(diagnostic, sources, &renderer));
+        }
+        let rest = self.list.len().saturating_sub(MOST_SHOWN);
+        if rest > 0 {
+            let _ = writeln!(out, "… and {rest} more\n");
         }
         out
     }
 }
+
+/// Most diagnostics shown at once: a broken file may have a hundred thousand, and nobody reads more than this.
+pub const MOST_SHOWN: usize = 100;
 
 /// Longest source line shown whole; a longer one is cut around the place.
 const LONGEST_LINE: usize = 200;
@@ -197,7 +211,9 @@ fn render_one(diagnostic: &Diagnostic, sources: &Sources, renderer: &Renderer) -
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
-    let mut group = Group::with_title(level.primary_title(diagnostic.message.as_str()).id(diagnostic.code));
+    // Whatever was typed may contain characters that move the cursor or recolour the terminal.
+    let message = visible(&diagnostic.message);
+    let mut group = Group::with_title(level.primary_title(message).id(diagnostic.code));
     let excerpts: Vec<_> = diagnostic
         .span
         .map(|span| (span, diagnostic.label.as_str(), AnnotationKind::Primary))
@@ -207,11 +223,17 @@ fn render_one(diagnostic: &Diagnostic, sources: &Sources, renderer: &Renderer) -
         .collect();
     for (excerpt, label, kind) in &excerpts {
         let annotation = kind.span(excerpt.start..excerpt.end);
-        let annotation = if label.is_empty() { annotation } else { annotation.label(*label) };
-        group = group.element(Snippet::source(excerpt.line.as_str()).path(excerpt.name).line_start(excerpt.number).annotation(annotation));
+        let annotation = if label.is_empty() { annotation } else { annotation.label(visible(label)) };
+        let snippet = Snippet::source(excerpt.line.as_str()).line_start(excerpt.number).annotation(annotation);
+        group = if excerpt.cut {
+            // The column within the piece shown is not that of the line.
+            group.element(Origin::path(visible(excerpt.name)).line(excerpt.number).char_column(excerpt.column)).element(snippet)
+        } else {
+            group.element(snippet.path(visible(excerpt.name)))
+        };
     }
     if let Some(help) = &diagnostic.help {
-        group = group.element(Level::HELP.message(help.as_str()));
+        group = group.element(Level::HELP.message(visible(help)));
     }
     renderer.render(&[group])
 }
@@ -220,6 +242,10 @@ fn render_one(diagnostic: &Diagnostic, sources: &Sources, renderer: &Renderer) -
 struct Excerpt<'a> {
     name: &'a str,
     number: usize,
+    /// Of the whole line, in characters, from 1.
+    column: usize,
+    /// Whether only a piece of the line is shown.
+    cut: bool,
     line: String,
     start: usize,
     end: usize,
@@ -233,17 +259,24 @@ impl<'a> Excerpt<'a> {
         let end = floor_boundary(text, span.end).max(start);
         let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |at| start + at);
+        // The other half of a line end.
+        let line_end = if text[start..line_end].ends_with('\r') { line_end - 1 } else { line_end };
         let (from, to) = if line_end - line_start <= LONGEST_LINE {
             (line_start, line_end)
         } else {
             let from = floor_boundary(text, start.saturating_sub(LONGEST_LINE / 4)).max(line_start);
             (from, floor_boundary(text, (from + LONGEST_LINE).min(line_end)))
         };
-        // Control characters would move the cursor of the terminal that shows them.
-        let line = text[from..to].chars().map(|c| if c.is_control() && c != '\t' { '·' } else { c }).collect::<String>();
-        let keep =
-            |at: usize| text[from..at.clamp(from, to)].chars().map(|c| if c.is_control() && c != '\t' { 2 } else { c.len_utf8() }).sum();
-        Some(Self { name: &source.name, number: text[..start].matches('\n').count() + 1, start: keep(start), end: keep(end), line })
+        let keep = |at: usize| visible(&text[from..at.clamp(from, to)]).len();
+        Some(Self {
+            name: &source.name,
+            number: text[..start].matches('\n').count() + 1,
+            column: text[line_start..start].chars().count() + 1,
+            cut: from > line_start,
+            start: keep(start),
+            end: keep(end),
+            line: visible(&text[from..to]).into_owned(),
+        })
     }
 }
 
@@ -288,6 +321,43 @@ mod tests {
             let shown = all.render(&sources, false);
             assert!(shown.contains("E0201") && shown.len() < 3000, "{shown}");
         }
+    }
+
+    #[test]
+    fn the_place_is_that_of_the_file_even_where_the_line_is_cut_or_ends_in_two_characters() {
+        let long = format!("a = 1\n{} = 2\n", "ä".repeat(5000));
+        let (sources, all) = one(&long, 6 + 2 * 3000, 6 + 2 * 3001);
+        let shown = all.render(&sources, false);
+        assert!(shown.contains("--> a.toml:2:3001"), "{shown}");
+        let (sources, all) = one("a = 1\r\nb = 2\r\n", 7, 8);
+        let shown = all.render(&sources, false);
+        assert!(shown.contains("a.toml:2:1") && shown.contains("| b = 2\n") && shown.contains("| ^ here"), "{shown}");
+    }
+
+    #[test]
+    fn nothing_typed_reaches_the_terminal_raw() {
+        let evil = "\u{1b}[31m\u{9b}31m\u{7}\r\u{202e}";
+        let mut sources = Sources::default();
+        let source = sources.add(evil, evil);
+        let span = Span { source, start: 0, end: evil.len() };
+        let mut all = Diagnostics::default();
+        all.push(Diagnostic::error("E0201", span, evil).label(evil).help(evil).related(span, evil));
+        let shown = all.render(&sources, false);
+        assert!(shown.chars().all(|c| c == '\n' || !(c.is_control() || c == '\u{202e}')), "{shown:?}");
+    }
+
+    #[test]
+    fn a_hundred_thousand_errors_are_counted_not_shown() {
+        let text = "=\n".repeat(100_000);
+        let mut sources = Sources::default();
+        let source = sources.add("a.toml", text.as_str());
+        let mut all = Diagnostics::default();
+        for line in 0..100_000 {
+            all.push(Diagnostic::error("E0105", Span { source, start: 2 * line, end: 2 * line + 1 }, "no"));
+        }
+        let shown = all.render(&sources, false);
+        assert_eq!(shown.matches("error[").count(), MOST_SHOWN);
+        assert!(shown.ends_with("… and 99900 more\n\n"), "{}", &shown[shown.len() - 60..]);
     }
 
     #[test]

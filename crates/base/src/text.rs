@@ -1,4 +1,14 @@
-//! Suggestions for misspelt words.
+//! Suggestions for misspelt words, and typed text made safe to show.
+
+use std::borrow::Cow;
+
+/// Text as it may be shown on a terminal: control characters, which would move the cursor or change colours, and characters that turn
+/// the direction of writing become `·`.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    let hidden =
+        |c: char| c.is_control() && c != '\t' || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    if text.contains(hidden) { Cow::Owned(text.replace(hidden, "·")) } else { Cow::Borrowed(text) }
+}
 
 /// The candidate nearest to `word`, if it is near enough to be worth suggesting.
 ///

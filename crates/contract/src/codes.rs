@@ -21,7 +21,7 @@ pub const CODES: &[Explanation] = &[
     code(
         "E0103",
         "file too large",
-        "A project file has a few kilobytes; at most 2 MiB are read. Measured data belongs into CSV files that the project names.",
+        "A project file has a few kilobytes; at most 1 MiB is read. Measured data belongs into CSV files that the project names.",
     ),
     code("E0104", "not a file", "The path names a directory, a pipe or a device. Exit code 4."),
     code(

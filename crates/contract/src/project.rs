@@ -10,7 +10,7 @@ use forcewright_base::text::closest;
 use crate::tree::{self, Entry, Item, Table, Value};
 
 /// Largest file accepted. Real project files have a few kilobytes.
-const LARGEST_BYTES: u64 = 2 * 1024 * 1024;
+const LARGEST_BYTES: u64 = 1024 * 1024;
 /// Longest chain of `extends`.
 const LONGEST_CHAIN: usize = 16;
 
@@ -102,9 +102,12 @@ impl Project {
         let mut tree = loader.file(path, None);
         let root_span = Span::default();
         let variants = loader.variants(&mut tree, choices);
+        loader.misplaced(&mut tree, "a variant");
         for setting in &choices.set {
             loader.set(&mut tree, setting);
         }
+        loader.misplaced(&mut tree, "`--set`");
+        loader.mechanism(&tree);
         Self {
             sources: loader.sources,
             tree,
@@ -273,23 +276,49 @@ impl Loader<'_> {
         let Some((key, value)) = setting.split_once('=') else {
             return self.diagnostics.push(refuse("a setting is KEY=VALUE"));
         };
-        let parts: Vec<&str> = key.split('.').map(str::trim).collect();
-        if parts.len() > 16 || parts.iter().any(|p| p.is_empty()) {
+        let parts: Vec<&str> = key.split('.').collect();
+        if parts.len() > 16 || parts.iter().any(|p| p.trim().is_empty()) {
             return self.diagnostics.push(refuse("a setting's key is a dotted path"));
         }
-        let item = tree::parse_value(value, source, key.len() + 1);
+        let item = tree::parse_value(value, source, key.len() + 1, &mut self.diagnostics);
         tree.overlay(nest(&parts, source, item));
+    }
+
+    /// The family must be known before anything else is read, so its key is checked here.
+    fn mechanism(&mut self, tree: &Table) {
+        if let Some(entry) = tree.get("mechanism").filter(|e| !matches!(e.item.value, Value::Text(_) | Value::Refused)) {
+            self.diagnostics.push(
+                Diagnostic::error("E0206", entry.item.span, format!("expected a text, found {}", entry.item.value.kind()))
+                    .label("expected a text")
+                    .help("write it as a text in quotes, such as `mechanism = \"compliant\"`"),
+            );
+        }
+    }
+
+    /// What is read before variants and settings are laid over the file cannot be changed by them.
+    fn misplaced(&mut self, tree: &mut Table, what: &str) {
+        for key in ["extends", "variants"] {
+            if let Some(entry) = tree.take(key) {
+                self.diagnostics.push(
+                    Diagnostic::error("E0301", entry.key_span, format!("{what} cannot change `{key}`"))
+                        .label("not known here")
+                        .help(format!("`{key}` stands at the top of a project file, which is read before variants and settings")),
+                );
+            }
+        }
     }
 }
 
-/// `a.b.c = item` as a tree; every key is placed on its part of the path.
+/// `a.b.c = item` as a tree; every key is placed on its part of the path, without the blanks around it.
 fn nest(parts: &[&str], source: SourceId, item: Item) -> Table {
     let mut at = parts.iter().map(|p| p.len() + 1).sum::<usize>();
     let mut item = item;
     for part in parts.iter().rev() {
         at -= part.len() + 1;
-        let key_span = Span { source, start: at, end: at + part.len() };
-        let entry = Entry { key: (*part).to_owned(), key_span, item };
+        let key = part.trim();
+        let start = at + (part.len() - part.trim_start().len());
+        let key_span = Span { source, start, end: start + key.len() };
+        let entry = Entry { key: key.to_owned(), key_span, item };
         item = Item { span: key_span, value: Value::Table(Table { entries: vec![entry] }) };
     }
     match item.value {

@@ -1,6 +1,6 @@
 //! The reader: a visitor that fills slots from the tree of a project file and reports everything that is wrong with it.
 
-use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, MOST_SHOWN, Span};
 use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit, format_si};
 
@@ -16,7 +16,16 @@ const MOST_NUMBERS: usize = 32;
 pub fn read<T: Describe + Default>(table: &Table, root: Span, diagnostics: &mut Diagnostics) -> T {
     let mut target = T::default();
     let mut unknown = Vec::new();
-    let mut reader = Reader { table, place: root, known: Vec::new(), reserved: Vec::new(), diagnostics, unknown: &mut unknown };
+    let mut reader = Reader {
+        table,
+        place: root,
+        known: Vec::new(),
+        missing: Vec::new(),
+        reserved: Vec::new(),
+        hint: None,
+        diagnostics,
+        unknown: &mut unknown,
+    };
     target.describe(&mut reader);
     reader.finish();
     if !unknown.is_empty() {
@@ -33,10 +42,13 @@ struct Unknown {
 }
 
 /// Suggests the nearest key of the same table, else a table that has such a key.
-fn report_unknown<T: Describe + Default>(unknown: Vec<Unknown>, diagnostics: &mut Diagnostics) {
+fn report_unknown<T: Describe + Default>(mut unknown: Vec<Unknown>, diagnostics: &mut Diagnostics) {
     let all = paths::keys_of(&mut T::default());
-    for Unknown { key, span, siblings } in unknown {
-        let help = if let Some(near) = closest(&key, siblings.iter().copied()) {
+    unknown.sort_by_key(|u| u.span);
+    for (index, Unknown { key, span, siblings }) in unknown.into_iter().enumerate() {
+        // What nobody will be shown needs no suggestion.
+        let near = if index < MOST_SHOWN { closest(&key, siblings.iter().copied()) } else { None };
+        let help = if let Some(near) = near {
             format!("did you mean `{near}`?")
         } else if let Some(path) = all.iter().find(|p| p.rsplit('.').next() == Some(key.as_str())) {
             format!("this key belongs elsewhere: `{path}`")
@@ -55,9 +67,18 @@ struct Reader<'a> {
     table: &'a Table,
     place: Span,
     known: Vec<&'static str>,
+    missing: Vec<Missing>,
     reserved: Vec<&'static Reserved>,
+    /// Said where something is missing from this table.
+    hint: Option<String>,
     diagnostics: &'a mut Diagnostics,
     unknown: &'a mut Vec<Unknown>,
+}
+
+/// A required key that is not there.
+struct Missing {
+    key: &'static str,
+    help: String,
 }
 
 impl<'a> Reader<'a> {
@@ -65,25 +86,17 @@ impl<'a> Reader<'a> {
         self.diagnostics.push(diagnostic);
     }
 
-    /// Marks a key as known, and returns its entry; reports it where it is required and missing.
+    /// Marks a key as known, and returns its entry; notes it where it is required and missing.
     fn entry(&mut self, param: &Param) -> Option<&'a Entry> {
         self.known.push(param.key);
         let entry = self.table.get(param.key);
         if entry.is_none() && param.required {
-            // A misspelt key is reported once, as unknown; calling it missing too would say the same twice.
-            let misspelt = self.table.entries.iter().any(|e| closest(&e.key, [param.key]).is_some());
-            if !misspelt {
-                let example = if param.dimension == Dimension::Ratio {
-                    String::new()
-                } else {
-                    format!(", such as `{} = \"{}\"`", param.key, param.dimension.example())
-                };
-                self.push(
-                    Diagnostic::error("E0302", self.place, format!("`{}` is missing", param.key))
-                        .label("from this table")
-                        .help(format!("add it{example}: {}", lower_first(param.doc))),
-                );
-            }
+            let example = if param.dimension == Dimension::Ratio {
+                String::new()
+            } else {
+                format!(", such as `{} = \"{}\"`", param.key, param.dimension.example())
+            };
+            self.missing.push(Missing { key: param.key, help: format!("add it{example}: {}", lower_first(param.doc)) });
         }
         entry
     }
@@ -103,6 +116,9 @@ impl<'a> Reader<'a> {
                 None => return,
             },
         };
+        if item.value.is_refused() {
+            return;
+        }
         match parse(&item) {
             Ok(value) => *slot = Some(Located { value, span: item.span, origin }),
             Err(diagnostic) => self.push(*diagnostic),
@@ -110,11 +126,35 @@ impl<'a> Reader<'a> {
     }
 
     fn enter<'b>(&'b mut self, table: &'b Table, place: Span) -> Reader<'b> {
-        Reader { table, place, known: Vec::new(), reserved: Vec::new(), diagnostics: self.diagnostics, unknown: self.unknown }
+        Reader {
+            table,
+            place,
+            known: Vec::new(),
+            missing: Vec::new(),
+            reserved: Vec::new(),
+            hint: None,
+            diagnostics: self.diagnostics,
+            unknown: self.unknown,
+        }
     }
 
-    /// Reports what nobody asked for.
-    fn finish(self) {
+    /// Reports what is missing.
+    fn report_missing(&mut self) {
+        let strangers = || self.table.entries.iter().filter(|e| !self.known.contains(&e.key.as_str())).take(MOST_SHOWN);
+        for Missing { key, help } in &self.missing {
+            // A misspelt key is reported once, as unknown; calling it missing too would say the same twice.
+            if strangers().any(|e| closest(&e.key, self.known.iter().copied()) == Some(key)) {
+                continue;
+            }
+            let help = self.hint.as_ref().unwrap_or(help).as_str();
+            self.diagnostics
+                .push(Diagnostic::error("E0302", self.place, format!("`{key}` is missing")).label("from this table").help(help));
+        }
+    }
+
+    /// Reports what is missing, and what nobody asked for.
+    fn finish(mut self) {
+        self.report_missing();
         for entry in &self.table.entries {
             if self.known.contains(&entry.key.as_str()) {
                 continue;
@@ -134,7 +174,10 @@ impl<'a> Reader<'a> {
                     .label("not available yet")
                     .help(reserved.instead),
                 ),
-                None => self.unknown.push(Unknown { key: entry.key.clone(), span: entry.key_span, siblings: self.known.clone() }),
+                None => {
+                    let siblings = self.known.iter().copied().chain(self.reserved.iter().map(|r| r.key)).collect();
+                    self.unknown.push(Unknown { key: entry.key.clone(), span: entry.key_span, siblings });
+                }
             }
         }
     }
@@ -227,6 +270,7 @@ fn check_range(param: &Param, si: f64, unit: &Unit, span: Span) -> Result<(), Bo
     let show = |value: f64| format_si(value, unit, 6);
     let least = if range.above { format!("above {}", show(range.min)) } else { format!("at least {}", show(range.min)) };
     let rule = match (range.min.is_finite(), range.max.is_finite()) {
+        (true, true) if range.min.to_bits() == range.max.to_bits() => show(range.min),
         (true, true) => format!("{least} and at most {}", show(range.max)),
         (true, false) => least,
         (false, _) => format!("at most {}", show(range.max)),
@@ -234,7 +278,7 @@ fn check_range(param: &Param, si: f64, unit: &Unit, span: Span) -> Result<(), Bo
     Err(Box::new(
         Diagnostic::error("E0204", span, format!("`{}` is {}, but must be {rule}", param.key, show(si)))
             .label("out of range")
-            .help(format!("{}: choose a value {rule}", param.doc.trim_end_matches('.'))),
+            .help(format!("{}: must be {rule}", param.doc.trim_end_matches('.'))),
     ))
 }
 
@@ -374,7 +418,7 @@ impl Visitor for Reader<'_> {
     fn section(&mut self, param: &Param, present: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor)) {
         let entry = self.entry(param);
         match entry.map(|e| &e.item.value) {
-            None => {}
+            None | Some(Value::Refused) => {}
             Some(Value::Table(table)) => {
                 let place = entry.map_or(self.place, |e| e.key_span);
                 *present = Some(Located::new((), place));
@@ -393,7 +437,20 @@ impl Visitor for Reader<'_> {
 
     fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members) {
         let Some(entry) = self.entry(param) else { return };
+        let count = match &entry.item.value {
+            Value::Table(table) => table.entries.len(),
+            Value::List(items) => items.len(),
+            _ => 0,
+        };
+        if count > MOST_MEMBERS {
+            return self.push(
+                Diagnostic::error("E0311", entry.key_span, format!("{count} members, at most {MOST_MEMBERS} are accepted"))
+                    .label("too many")
+                    .help("split the mechanism, or use a layout for copies"),
+            );
+        }
         let found: Vec<(Located<String>, Table, Span)> = match (&entry.item.value, form) {
+            (Value::Refused, _) => return,
             (Value::Table(table), Form::Table) => self.table_members(table, param),
             (Value::List(items), Form::List) => self.list_members(items),
             (_, Form::Table) => {
@@ -407,17 +464,25 @@ impl Visitor for Reader<'_> {
                 return self.push(*wrong_type(&entry.item, "a list of tables", &format!("`[[… {}]]` with a `name` each", param.key)));
             }
         };
-        if found.len() > MOST_MEMBERS {
-            return self.push(
-                Diagnostic::error("E0311", entry.key_span, format!("{} members, at most {MOST_MEMBERS} are accepted", found.len()))
-                    .label("too many")
-                    .help("split the mechanism, or use a layout for copies"),
-            );
-        }
+        let names: Vec<String> = found.iter().map(|(name, ..)| name.value.clone()).collect();
         for (index, (name, table, place)) in found.into_iter().enumerate() {
+            // A member that a path has called into being: most likely the path is misspelt.
+            let others = names.iter().map(String::as_str).filter(|other| *other != name.value);
+            let hint = if form == Form::List && name.span == place && name.origin == Origin::File {
+                Some(match closest(&name.value, others.clone()) {
+                    Some(near) => format!("`{}` is a new member; did you mean `{near}`?", shorten(&name.value)),
+                    None => format!("`{}` is a new member; there are {}", shorten(&name.value), others.collect::<Vec<_>>().join(", ")),
+                })
+            } else {
+                None
+            };
             members.add(name);
             let mut inner = self.enter(&table, place);
+            inner.hint = hint;
             members.describe(index, &mut inner);
+            if form == Form::List {
+                inner.known.push("name");
+            }
             inner.finish();
         }
     }
@@ -437,6 +502,7 @@ impl Reader<'_> {
         for entry in &table.entries {
             match &entry.item.value {
                 Value::Table(inner) => found.push((Located::new(entry.key.clone(), entry.key_span), inner.clone(), entry.key_span)),
+                Value::Refused => {}
                 _ => self.push(*wrong_type(&entry.item, "a table", &format!("`{} = {{ … }}` in `{}`", shorten(&entry.key), param.key))),
             }
         }
@@ -447,15 +513,19 @@ impl Reader<'_> {
         let mut found: Vec<(Located<String>, Table, Span)> = Vec::new();
         for (index, item) in items.iter().enumerate() {
             let Value::Table(table) = &item.value else {
-                self.push(*wrong_type(item, "a table", "`[[…]]` with its keys below"));
+                if !item.value.is_refused() {
+                    self.push(*wrong_type(item, "a table", "`[[…]]` with its keys below"));
+                }
                 continue;
             };
             let mut table = table.clone();
             let name = match table.take("name") {
-                None => Located::new(format!("{}", index + 1), item.span),
+                None => Located { value: format!("{}", index + 1), span: item.span, origin: Origin::Default },
                 Some(Entry { item: Item { value: Value::Text(name), span }, .. }) => Located::new(name, span),
                 Some(entry) => {
-                    self.push(*wrong_type(&entry.item, "a name", "a text in quotes"));
+                    if !entry.item.value.is_refused() {
+                        self.push(*wrong_type(&entry.item, "a name", "a text in quotes"));
+                    }
                     continue;
                 }
             };

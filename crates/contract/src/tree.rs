@@ -1,6 +1,8 @@
 //! The project file as a tree of values, each with its place. Merging (`extends`, `variants`, `--set`) happens here, before anything
 //! is understood, and keeps the places, so that an error points at the text that caused it wherever that text stands.
 
+use std::collections::BTreeMap;
+
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, SourceId, Span};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -30,6 +32,8 @@ pub enum Value {
     List(Vec<Item>),
     /// A table.
     Table(Table),
+    /// Something that has been reported already: a date, a number that is not finite. Whoever reads it says nothing more.
+    Refused,
 }
 
 impl Value {
@@ -41,6 +45,16 @@ impl Value {
             Self::Flag(_) => "true or false",
             Self::List(_) => "a list",
             Self::Table(_) => "a table",
+            Self::Refused => "a value that cannot be used",
+        }
+    }
+
+    /// Whether it, or a member of it, has been reported already.
+    pub fn is_refused(&self) -> bool {
+        match self {
+            Self::Refused => true,
+            Self::List(items) => items.iter().any(|i| i.value.is_refused()),
+            _ => false,
         }
     }
 }
@@ -78,8 +92,10 @@ impl Table {
     /// Lays another table over this one: tables merge key by key, lists of named tables merge name by name, everything else is
     /// replaced. The other wins.
     pub fn overlay(&mut self, other: Self) {
+        // Searched by an index: files of a hundred thousand keys are hostile, but must not take for ever.
+        let places: BTreeMap<String, usize> = self.entries.iter().enumerate().map(|(at, e)| (e.key.clone(), at)).collect();
         for entry in other.entries {
-            match self.entries.iter_mut().find(|e| e.key == entry.key) {
+            match places.get(&entry.key).and_then(|at| self.entries.get_mut(*at)) {
                 None => self.entries.push(entry),
                 Some(mine) => merge(mine, entry),
             }
@@ -87,12 +103,18 @@ impl Table {
     }
 }
 
+/// Where each name of a list of named tables stands; the first of two equal ones.
+fn places_of(list: &[Item]) -> BTreeMap<String, usize> {
+    list.iter().enumerate().rev().filter_map(|(at, item)| Some((name_of(item)?.to_owned(), at))).collect()
+}
+
 fn merge(mine: &mut Entry, theirs: Entry) {
     let replaced = match (&mut mine.item.value, theirs.item.value) {
         (Value::Table(base), Value::Table(over)) => return base.overlay(over),
         (Value::List(base), Value::List(over)) if named(base) && named(&over) => {
+            let places = places_of(base);
             for item in over {
-                let at = base.iter().position(|b| name_of(b).is_some() && name_of(b) == name_of(&item));
+                let at = name_of(&item).and_then(|name| places.get(name)).copied();
                 match (at, item) {
                     (Some(at), Item { value: Value::Table(table), .. }) => overlay_item(&mut base[at], table),
                     (_, item) => base.push(item),
@@ -102,24 +124,22 @@ fn merge(mine: &mut Entry, theirs: Entry) {
         }
         // `design.beams.b1.bend = …` in a variant or on the command line: members of a list by name.
         (Value::List(base), Value::Table(over)) if named(base) => {
+            let places = places_of(base);
             let mut strangers = Table::default();
             for entry in over.entries {
-                match (base.iter().position(|b| name_of(b) == Some(entry.key.as_str())), entry.item.value) {
-                    (Some(at), Value::Table(table)) => overlay_item(&mut base[at], table),
+                match (places.get(&entry.key), entry.item.value) {
+                    (Some(at), Value::Table(table)) => overlay_item(&mut base[*at], table),
                     (_, value) => strangers.entries.push(Entry { item: Item { value, ..entry.item }, ..entry }),
                 }
             }
-            // A name that the list does not have becomes a member without `name`: the reader says what is missing, at this place.
-            base.extend(strangers.entries.into_iter().map(|entry| Item {
-                span: entry.key_span,
-                value: match entry.item.value {
-                    Value::Table(mut table) => {
-                        let name = Item { span: entry.key_span, value: Value::Text(entry.key) };
-                        table.entries.insert(0, Entry { key: "name".to_owned(), key_span: entry.key_span, item: name });
-                        Value::Table(table)
-                    }
-                    other => other,
-                },
+            // A name that the list does not have becomes a new member: the reader says what it lacks, at this place.
+            base.extend(strangers.entries.into_iter().map(|entry| match entry.item.value {
+                Value::Table(mut table) => {
+                    let name = Item { span: entry.key_span, value: Value::Text(entry.key) };
+                    table.entries.insert(0, Entry { key: "name".to_owned(), key_span: entry.key_span, item: name });
+                    Item { span: entry.key_span, value: Value::Table(table) }
+                }
+                other => Item { span: entry.item.span, value: other },
             }));
             return;
         }
@@ -158,98 +178,122 @@ pub fn parse(text: &str, source: SourceId, diagnostics: &mut Diagnostics) -> Tab
         return Table::default();
     }
     let (document, errors) = DeTable::parse_recoverable(text);
-    for error in errors {
-        let range = error.span().unwrap_or(0..0);
-        let span = Span { source, start: range.start, end: range.end.max(range.start + 1) };
-        diagnostics.push(syntax_error(error.message(), span));
-    }
-    let mut converter = Converter { source, diagnostics };
+    report(text, &errors, Span { source, ..Span::default() }, diagnostics);
+    let mut converter = Converter { source, offset: 0, diagnostics };
     converter.table(document.into_inner())
 }
 
-fn syntax_error(message: &str, span: Span) -> Diagnostic {
-    if message.contains("duplicate key") {
-        return Diagnostic::error("E0106", span, "this key is given twice").label("second time").help("keep one of the two");
+/// Reports what the parser found wrong with a text that starts at `base`, one syntax error per line: the parser stumbles several
+/// times over the same mistake.
+fn report(text: &str, errors: &[toml::de::Error], base: Span, diagnostics: &mut Diagnostics) {
+    let mut last_line_end = None;
+    for error in errors {
+        let range = error.span().unwrap_or(0..0);
+        let start = range.start.min(text.len());
+        let span = Span { source: base.source, start: base.start + start, end: base.start + range.end.max(start + 1) };
+        if error.message().contains("duplicate key") {
+            diagnostics.push(
+                Diagnostic::error("E0106", span, "this key is given twice")
+                    .label("second time")
+                    .help("keep one of the two, or remove both"),
+            );
+            continue;
+        }
+        let line_end = text.as_bytes()[start..].iter().position(|b| *b == b'\n').map_or(text.len(), |at| start + at);
+        if last_line_end.replace(line_end) != Some(line_end) {
+            let typed = text.get(start..range.end).unwrap_or("").trim();
+            let help = if error.message().contains("must be quoted") && typed.len() <= 60 {
+                format!("write it in quotes: \"{typed}\"")
+            } else {
+                "values with units are quoted texts (`thickness = \"1 mm\"`), tables start with `[name]`, comments with `#`".to_owned()
+            };
+            diagnostics.push(Diagnostic::error("E0105", span, format!("not valid TOML: {}", error.message())).help(help));
+        }
     }
-    Diagnostic::error("E0105", span, format!("not valid TOML: {message}"))
-        .help("values with units are quoted texts (`thickness = \"1 mm\"`), tables start with `[name]`, comments with `#`")
 }
 
-/// Reads the value given with `--set KEY=VALUE`: TOML if it is TOML, otherwise a text, so that a shell's lost quotes do no harm.
-pub fn parse_value(text: &str, source: SourceId, offset: usize) -> Item {
-    let plain = Item { span: Span { source, start: offset, end: offset + text.len() }, value: Value::Text(text.trim().to_owned()) };
-    if too_deep(text).is_some() {
+/// Reads the value given with `--set KEY=VALUE`: TOML if it is TOML, otherwise a text, so that a shell's lost quotes do no harm. A list
+/// or a table must be TOML: what is wrong with it is reported.
+pub fn parse_value(text: &str, source: SourceId, offset: usize, diagnostics: &mut Diagnostics) -> Item {
+    let trimmed = text.trim();
+    let start = offset + (text.len() - text.trim_start().len());
+    let span = Span { source, start, end: start + trimmed.len() };
+    let plain = Item { span, value: Value::Text(trimmed.to_owned()) };
+    let nested = trimmed.starts_with(['[', '{']);
+    if let Some(at) = too_deep(trimmed) {
+        if nested {
+            let at = Span { source, start: start + at, end: start + at + 1 };
+            diagnostics
+                .push(Diagnostic::error("E0107", at, format!("nested deeper than {DEEPEST} levels")).help("look for an unclosed bracket"));
+            return Item { span, value: Value::Refused };
+        }
         return plain;
     }
-    let (value, errors) = DeValue::parse_recoverable(text);
+    let (value, errors) = DeValue::parse_recoverable(trimmed);
     if !errors.is_empty() {
+        if nested {
+            report(trimmed, &errors, span, diagnostics);
+            return Item { span, value: Value::Refused };
+        }
         return plain;
     }
-    let mut diagnostics = Diagnostics::default();
-    let mut item = Converter { source, diagnostics: &mut diagnostics }.item(value);
-    if diagnostics.has_errors() {
+    let mut found = Diagnostics::default();
+    let mut item = Converter { source, offset: start, diagnostics: &mut found }.item(value);
+    if found.has_errors() && !nested {
         return plain;
     }
-    shift(&mut item, offset);
+    diagnostics.append(found);
+    item.span = span;
     item
 }
 
-fn shift(item: &mut Item, offset: usize) {
-    item.span.start += offset;
-    item.span.end += offset;
-    match &mut item.value {
-        Value::List(items) => items.iter_mut().for_each(|i| shift(i, offset)),
-        Value::Table(table) => {
-            for entry in &mut table.entries {
-                entry.key_span.start += offset;
-                entry.key_span.end += offset;
-                shift(&mut entry.item, offset);
-            }
-        }
-        _ => {}
-    }
-}
-
-/// Where brackets or dotted keys nest too deep. The parser recurses over dotted keys and its result is dropped recursively: a hostile
-/// file must be stopped before.
+/// Where brackets or dotted keys nest too deep. The parser recurses over both and its result is dropped recursively: a hostile file
+/// must be stopped before. Texts, comments and bare words are skipped exactly as the parser's lexer skips them, so that nothing hides.
 fn too_deep(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     let (mut depth, mut dots, mut at) = (0_usize, 0_usize, 0_usize);
     while at < bytes.len() {
+        let next = match bytes[at] {
+            b'#' => until(bytes, at, b"\r\n"),
+            quote @ (b'"' | b'\'') => skip_string(bytes, at, quote),
+            b'.' | b'=' | b',' | b'[' | b']' | b'{' | b'}' | b' ' | b'\t' | b'\r' | b'\n' => at + 1,
+            // A quote inside a bare word does not start a text.
+            _ => until(bytes, at, b".=,[]{} \t#\r\n"),
+        };
         match bytes[at] {
-            b'#' => {
-                at += bytes[at..].iter().position(|b| *b == b'\n').unwrap_or(bytes.len() - at);
-                dots = 0;
-                continue;
-            }
-            quote @ (b'"' | b'\'') => {
-                at = skip_string(bytes, at, quote);
-                continue;
-            }
             b'[' | b'{' => (depth, dots) = (depth + 1, 0),
             b']' | b'}' => (depth, dots) = (depth.saturating_sub(1), 0),
-            b'\n' | b',' | b'=' => dots = 0,
+            b'\n' | b'\r' | b',' | b'=' => dots = 0,
             b'.' => dots += 1,
             _ => {}
         }
         if depth > DEEPEST || dots > DEEPEST {
             return Some(at);
         }
-        at += 1;
+        at = next;
     }
     None
 }
 
-/// First byte after the string that starts at `at`.
+/// The first of some bytes at or after `from`, else the end.
+fn until(bytes: &[u8], from: usize, stops: &[u8]) -> usize {
+    bytes[from..].iter().position(|b| stops.contains(b)).map_or(bytes.len(), |at| from + at)
+}
+
+/// First byte after the text in quotes that starts at `at`.
 fn skip_string(bytes: &[u8], at: usize, quote: u8) -> usize {
     let long = bytes[at..].starts_with(&[quote; 3]);
-    let width = if long { 3 } else { 1 };
-    let mut i = at + width;
+    let mut i = at + if long { 3 } else { 1 };
     while i < bytes.len() {
         match bytes[i] {
-            b'\\' if quote == b'"' => i += 2,
+            // Of what is escaped only these two matter here: an escaped line end still ends a short text.
+            b'\\' if quote == b'"' => i += if matches!(bytes.get(i + 1), Some(b'\\' | b'"')) { 2 } else { 1 },
             b'\n' if !long => return i,
-            b if b == quote && (!long || bytes[i..].starts_with(&[quote; 3])) => return i + width,
+            b if b == quote && !long => return i + 1,
+            // Up to two more quotes belong to the text that ends here.
+            _ if long && bytes[i..].starts_with(&[quote; 3]) => {
+                return i + 3 + bytes[i + 3..].iter().take(2).take_while(|b| **b == quote).count();
+            }
             _ => i += 1,
         }
     }
@@ -258,12 +302,14 @@ fn skip_string(bytes: &[u8], at: usize, quote: u8) -> usize {
 
 struct Converter<'a> {
     source: SourceId,
+    /// Where the text that was parsed starts in the source.
+    offset: usize,
     diagnostics: &'a mut Diagnostics,
 }
 
 impl Converter<'_> {
     fn span(&self, range: std::ops::Range<usize>) -> Span {
-        Span { source: self.source, start: range.start, end: range.end }
+        Span { source: self.source, start: self.offset + range.start, end: self.offset + range.end }
     }
 
     fn table(&mut self, table: DeTable<'_>) -> Table {
@@ -291,7 +337,7 @@ impl Converter<'_> {
                     Diagnostic::error("E0206", span, "a date has no place in a project file")
                         .help("write it as a quoted text, or as a comment"),
                 );
-                Value::Flag(false)
+                Value::Refused
             }
             DeValue::Array(items) => Value::List(items.into_iter().map(|i| self.item(i)).collect()),
             DeValue::Table(table) => Value::Table(self.table(table)),
@@ -308,8 +354,7 @@ impl Converter<'_> {
                 .label("not a number that can be computed with")
                 .help("write a finite number"),
         );
-        // One error is enough: what reads the tree sees a harmless number.
-        Value::Number(0.0)
+        Value::Refused
     }
 }
 
@@ -357,6 +402,11 @@ mod tests {
             format!("{}a = 1", "a.".repeat(20_000)),
             format!("[{}a]", "a . ".repeat(20_000)),
             format!("{}a = 1", "\"a\".".repeat(20_000)),
+            // Hidden behind texts whose end is easily misjudged.
+            format!("a = \"\\\n{}a = 1", "a.".repeat(20_000)),
+            format!("a = {{ x = \"\"\"a\"\"\"\", {}a = 1 }}", "a.".repeat(20_000)),
+            format!("a = x\" {}", "[".repeat(20_000)),
+            format!("# a\r{}a = 1", "a.".repeat(20_000)),
         ];
         for text in deep {
             assert!(read(&text).1.has_errors());

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::ArgMatches;
+use forcewright::base::text::visible;
 use forcewright::{DiskFiles, Loaded};
 use serde_json::json;
 
-use super::{choices, diagnostic_json, refuse};
+use super::{choices, diagnostic_json, diagnostics_json, refuse};
 use crate::{exit, output};
 
 pub(crate) fn run(matches: &ArgMatches) -> u8 {
@@ -23,8 +24,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
             match Loaded::from_file(&DiskFiles, file, &choice) {
                 Err(refused) => {
                     worst = worst.max(refuse(&refused, false));
-                    let list: Vec<_> =
-                        refused.diagnostics.in_file_order().into_iter().map(|d| diagnostic_json(d, &refused.sources)).collect();
+                    let list = diagnostics_json(&refused);
                     documents.push(json!({ "file": name.to_string(), "variant": choice.variant, "ok": false, "diagnostics": list }));
                     // The variants of a broken file repeat its errors.
                     break;
@@ -37,7 +37,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
                     }
                     documents.push(json!({ "file": name.to_string(), "variant": choice.variant, "ok": true, "diagnostics": list }));
                     if !json {
-                        output::print(&format!("{what}: ok\n"));
+                        output::print(&format!("{}: ok\n", visible(&what)));
                     }
                     if index == 1 && choice.variant.is_none() {
                         selection.extend(
@@ -50,7 +50,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     }
     if json {
         let document = json!({ "schema": 1, "forcewright": forcewright::VERSION, "checked": documents });
-        output::print(&format!("{document:#}\n"));
+        output::print(&output::json_text(&document));
     }
     worst
 }

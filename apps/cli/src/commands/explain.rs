@@ -27,6 +27,6 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         || "`forcewright explain --all` prints every code".to_owned(),
         |n| format!("did you mean {n}? `forcewright explain --all` prints every code"),
     );
-    output::narrate(&format!("error[E0123]: there is no code `{}`\n  = help: {help}\n", code.chars().take(40).collect::<String>()));
+    output::complain("E0123", &format!("there is no code `{}`", code.chars().take(40).collect::<String>()), &help, false);
     exit::USAGE
 }

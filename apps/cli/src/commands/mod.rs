@@ -9,6 +9,7 @@ pub(crate) mod schema;
 pub(crate) mod solve;
 
 use clap::ArgMatches;
+use forcewright::base::diagnostics::MOST_SHOWN;
 use forcewright::{Choices, Refused};
 use serde_json::json;
 
@@ -39,14 +40,17 @@ fn choices(matches: &ArgMatches) -> Choices {
 /// Reports a refused project; the exit code for it.
 fn refuse(refused: &Refused, json: bool) -> u8 {
     if json {
-        let list: Vec<_> = refused.diagnostics.in_file_order().into_iter().map(|d| diagnostic_json(d, &refused.sources)).collect();
-        let document = json!({ "schema": 1, "forcewright": forcewright::VERSION, "status": { "kind": "refused" }, "diagnostics": list });
-        output::print(&format!("{document:#}\n"));
+        output::print(&output::json_text(&output::refusal(&json!(diagnostics_json(refused)))));
     }
     output::narrate(&refused.render(output::colour_on_stderr()));
     let count = refused.errors();
     output::narrate(&format!("{count} error{}; `forcewright explain CODE` tells more about a code\n", if count == 1 { "" } else { "s" }));
     if refused.file_missing { exit::IO } else { exit::USAGE }
+}
+
+/// The first of the diagnostics, as many as are shown to people.
+fn diagnostics_json(refused: &Refused) -> Vec<serde_json::Value> {
+    refused.diagnostics.in_file_order().into_iter().take(MOST_SHOWN).map(|d| diagnostic_json(d, &refused.sources)).collect()
 }
 
 fn diagnostic_json(

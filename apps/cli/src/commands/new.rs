@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::ArgMatches;
-use forcewright::base::text::closest;
+use forcewright::base::text::{closest, visible};
 use forcewright::gallery::{self, EXAMPLES, Example};
 
 use crate::table::{Align, columns};
@@ -23,12 +23,12 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
             || "`forcewright new --list` names them".to_owned(),
             |n| format!("did you mean `{n}`? `forcewright new --list` names them all"),
         );
-        output::narrate(&format!("error[E0121]: there is no example `{name}`\n  = help: {help}\n"));
+        output::complain("E0121", &format!("there is no example `{}`", name.chars().take(60).collect::<String>()), &help, false);
         return exit::USAGE;
     };
     let folder = matches.get_one::<PathBuf>("dir").cloned().unwrap_or_default();
-    if let Err(error) = std::fs::create_dir_all(&folder) {
-        return output::write_failed(&folder, &error);
+    if let Err(failed) = output::prepare(&folder) {
+        return output::write_failed(&failed, false);
     }
     // What an example extends comes with it.
     let mut wanted: Vec<&Example> = vec![example];
@@ -42,22 +42,22 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         // A base that is already there, unchanged, is what was asked for.
         let same = std::fs::read_to_string(&path).is_ok_and(|text| text == file.text);
         if path.exists() && !force && !(same && index > 0) {
-            output::narrate(&format!(
-                "error[E0122]: `{}` exists already\n  = help: choose another folder with --dir, or overwrite it with --force\n",
-                path.display()
-            ));
+            let message = format!("`{}` exists already", path.display());
+            output::complain("E0122", &message, "choose another folder with --dir, or overwrite it with --force", false);
             return exit::IO;
         }
-        files.push((path, file.text));
+        files.push((file.file_name(), file.text.to_owned()));
     }
-    for (path, text) in &files {
-        if let Err(error) = output::write(path, text) {
-            return output::write_failed(path, &error);
-        }
-        output::narrate(&format!("wrote {}\n", path.display()));
+    if let Err(failed) = output::write_all(&folder, &files) {
+        return output::write_failed(&failed, false);
     }
-    if let Some((path, _)) = files.first() {
-        output::narrate(&format!("next: forcewright solve {} --out out\n", path.display()));
+    for (name, _) in &files {
+        output::narrate(&visible(&format!("wrote {}", folder.join(name).display())));
+        output::narrate("\n");
+    }
+    if let Some((name, _)) = files.first() {
+        output::narrate(&visible(&format!("next: forcewright solve {} --out out", folder.join(name).display())));
+        output::narrate("\n");
     }
     exit::MET
 }

@@ -32,7 +32,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     }
     if format == "json" {
         let document = json!({ "schema": 1, "forcewright": forcewright::VERSION, "papers": documents });
-        output::print(&format!("{document:#}\n"));
+        output::print(&output::json_text(&document));
     }
     if all_agree { exit::MET } else { exit::MISSED }
 }
@@ -43,6 +43,7 @@ fn cells(row: &ReproductionRow) -> [String; 4] {
     let mark = match row.agrees() {
         Some(true) => "✓",
         Some(false) => "✗",
+        None if row.paper.is_some() => "⚠",
         None => "·",
     };
     [paper, format_number(row.ours, 6), difference, mark.to_owned()]
@@ -62,7 +63,10 @@ fn text(reproduction: &Reproduction, rows: &[ReproductionRow]) -> String {
     }
     let agree = rows.iter().filter(|r| r.agrees() == Some(true)).count();
     let printed = rows.iter().filter(|r| r.paper.is_some()).count();
-    let _ = writeln!(out, "\n{agree} of {printed} printed numbers reproduced within what is explained; · has no printed number");
+    let _ = writeln!(
+        out,
+        "\n{agree} of {printed} printed numbers reproduced within what is explained; ⚠ departs, see why; · has no printed number"
+    );
     out
 }
 
@@ -74,6 +78,7 @@ fn markdown(rows: &[ReproductionRow]) -> String {
         let status = match mark.as_str() {
             "✓" => "✅",
             "✗" => "❌",
+            "⚠" => "⚠",
             _ => "🧪",
         };
         let unit = &row.unit;

@@ -12,7 +12,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         (None, _) => None,
     };
     let Some(family) = family else {
-        output::narrate("error[E0124]: there are several families\n  = help: name one, such as `forcewright schema compliant`\n");
+        output::complain("E0124", "there are several families", "name one, such as `forcewright schema compliant`", false);
         return exit::USAGE;
     };
     match matches.get_one::<String>("format").map(String::as_str) {

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
+use forcewright::base::text::visible;
 use forcewright::base::units::{format_number, format_si};
 use forcewright::model::{Check, CheckState, Outcome, Report, Sense, StatusKind};
 use forcewright::report::{csv, html, json, svg};
@@ -26,9 +27,9 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     output::narrate(&loaded.project.diagnostics.render(&loaded.project.sources, output::colour_on_stderr()));
     // Whether the results can be written is found out before the work, not after.
     if let Some(folder) = out
-        && let Err(error) = std::fs::create_dir_all(folder)
+        && let Err(failed) = output::prepare(folder)
     {
-        return output::write_failed(folder, &error);
+        return output::write_failed(&failed, as_json);
     }
     let mut bar = Progress::new("solving");
     let report = loaded.solve(&file.display().to_string(), &repeat_command(file, out, &choices), &mut |fraction| {
@@ -36,27 +37,28 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         true
     });
     bar.done();
-    let document = json::document(&report.outcome, &report.input_sha256, &report.version);
+    let document = output::json_text(&json::document(&report.outcome, &report.input_sha256, &report.version));
     if as_json {
-        output::print(&format!("{document:#}\n"));
+        output::print(&document);
     } else {
-        output::print(&summary(&report, output::colour_on_stdout()));
+        // Titles and names are typed by somebody: shown, not obeyed.
+        let shown: Vec<_> = summary(&report).lines().map(|line| visible(line).into_owned()).collect();
+        output::print(&coloured(shown.join("\n") + "\n", output::colour_on_stdout()));
     }
     if let Some(folder) = out {
         let mut files = vec![
             ("report.html".to_owned(), html::page(&report)),
-            ("result.json".to_owned(), format!("{document:#}\n")),
+            ("result.json".to_owned(), document),
             ("curves.csv".to_owned(), csv::curves(&report.outcome)),
         ];
         files.extend(report.figures.iter().map(|f| (format!("{}.svg", f.id), svg::standalone(f))));
-        for (name, text) in &files {
-            let path = folder.join(name);
-            if let Err(error) = output::write(&path, text) {
-                return output::write_failed(&path, &error);
-            }
+        if let Err(failed) = output::write_all(folder, &files) {
+            // The document, if one was asked for, is printed already.
+            return output::write_failed(&failed, false);
         }
         let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-        output::narrate(&format!("wrote {} in {}\n", names.join(", "), folder.display()));
+        output::narrate(&visible(&format!("wrote {} in {}", names.join(", "), folder.display())));
+        output::narrate("\n");
     }
     exit_code(&report.outcome)
 }
@@ -91,7 +93,7 @@ fn quote(word: &str) -> String {
     if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
-fn summary(report: &Report, colour: bool) -> String {
+fn summary(report: &Report) -> String {
     let outcome = &report.outcome;
     let mut out = format!("{}\n", outcome.title);
     if let Some(variant) = &report.variant {
@@ -101,7 +103,7 @@ fn summary(report: &Report, colour: bool) -> String {
     if outcome.checks.is_empty() {
         out.push_str("no requirements given\n");
     } else {
-        out.push_str(&requirement_table(&outcome.checks, colour));
+        out.push_str(&requirement_table(&outcome.checks));
     }
     let advice: Vec<&Check> = outcome.checks.iter().filter(|c| c.advice.is_some()).collect();
     if !advice.is_empty() {
@@ -139,7 +141,7 @@ fn summary(report: &Report, colour: bool) -> String {
     out
 }
 
-fn requirement_table(checks: &[Check], colour: bool) -> String {
+fn requirement_table(checks: &[Check]) -> String {
     let mut rows = vec![["", "requirement", "found", "limit", "margin", "code"].map(str::to_owned).to_vec()];
     for check in checks {
         let mark = match check.state {
@@ -158,7 +160,11 @@ fn requirement_table(checks: &[Check], colour: bool) -> String {
             check.code.to_owned(),
         ]);
     }
-    let text = columns(&rows, &[Align::Left, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
+    columns(&rows, &[Align::Left, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left])
+}
+
+/// The marks of the requirements in their colours.
+fn coloured(text: String, colour: bool) -> String {
     if !colour {
         return text;
     }

@@ -31,6 +31,13 @@ pub(crate) struct BeamModel {
     pub(crate) info: Arc<BeamInfo>,
 }
 
+impl BeamModel {
+    /// Unknowns of (`φ_A`, `φ_B`, H, V).
+    pub(crate) fn places(&self) -> [Option<usize>; 4] {
+        [self.ends[0], self.ends[1], Some(self.force), Some(self.force + 1)]
+    }
+}
+
 /// A dimensionless network with numbered unknowns. The driven one is the last.
 #[derive(Debug)]
 pub(crate) struct Model {
@@ -223,9 +230,9 @@ impl Resolution {
 pub(crate) struct System<'a> {
     pub(crate) model: &'a Model,
     pub(crate) resolution: &'a Resolution,
-    elements: Vec<Element>,
-    matrix: Vec<f64>,
-    residual: Vec<f64>,
+    pub(crate) elements: Vec<Element>,
+    pub(crate) matrix: Vec<f64>,
+    pub(crate) residual: Vec<f64>,
     lu: Lu,
     rhs: Vec<f64>,
     /// Newton step or tangent, of the length of a state.
@@ -252,7 +259,7 @@ impl<'a> System<'a> {
     }
 
     /// Number of unknowns that are solved for.
-    fn solved(&self) -> usize {
+    pub(crate) fn solved(&self) -> usize {
         self.model.unknowns - usize::from(self.model.kinematic)
     }
 
@@ -261,6 +268,16 @@ impl<'a> System<'a> {
     /// # Errors
     /// [`Singular`] if the tangent, or that of the bubbles of a beam, has no inverse.
     pub(crate) fn linearise(&mut self, x: &[f64], control: f64) -> Result<(), Singular> {
+        self.evaluate(x, control)?;
+        self.factorisations += 1;
+        self.lu.factor(self.solved(), self.model.unknowns, &self.matrix)
+    }
+
+    /// Evaluates the equations without factoring them: at a limit point the tangent has no inverse.
+    ///
+    /// # Errors
+    /// [`Singular`] if the tangent of the bubbles of a beam has no inverse.
+    pub(crate) fn evaluate(&mut self, x: &[f64], control: f64) -> Result<(), Singular> {
         let (model, resolution) = (self.model, self.resolution);
         self.evaluations += 1;
         self.matrix.fill(0.0);
@@ -273,15 +290,14 @@ impl<'a> System<'a> {
         if !model.kinematic {
             self.residual[model.driven()] -= control * model.projection;
         }
-        self.factorisations += 1;
-        self.lu.factor(self.solved(), model.unknowns, &self.matrix)
+        Ok(())
     }
 
     /// Adds one condensed beam.
     fn scatter(&mut self, index: usize, x: &[f64]) {
         let (model, m) = (self.model, self.model.unknowns);
         let (beam, element) = (&model.beams[index], &self.elements[index]);
-        let places = [beam.ends[0], beam.ends[1], Some(beam.force), Some(beam.force + 1)];
+        let places = beam.places();
         for (i, row) in places.iter().enumerate() {
             let Some(row) = row else { continue };
             self.residual[*row] += element.gradient[i];
@@ -336,7 +352,36 @@ impl<'a> System<'a> {
         self.expand(0.0);
     }
 
-    fn expand(&mut self, residual: f64) {
+    /// Replaces a right-hand side of the length of a state by the solution of the linearised equations, bubbles included. Under a
+    /// kinematic drive the driven unknown is held: its equation is left out and its solution is 0.
+    pub(crate) fn solve_state(&mut self, rhs: &mut [f64]) {
+        let bubbles = self.resolution.basis.bubbles;
+        let (unknowns, inner) = rhs.split_at_mut(self.model.unknowns);
+        for (index, beam) in self.model.beams.iter().enumerate() {
+            let part = &mut inner[index * bubbles..(index + 1) * bubbles];
+            if part.iter().all(|v| *v == 0.0) {
+                continue;
+            }
+            let left = self.elements[index].project(part);
+            for (place, value) in beam.places().iter().zip(left) {
+                if let Some(place) = place {
+                    unknowns[*place] -= value;
+                }
+            }
+            self.elements[index].solve_inner(part);
+        }
+        let n = self.solved();
+        self.lu.solve(&mut unknowns[..n]);
+        unknowns[n..].fill(0.0);
+        self.change.fill(0.0);
+        self.change[..n].copy_from_slice(&unknowns[..n]);
+        self.expand(0.0);
+        for (x, change) in inner.iter_mut().zip(&self.change[self.model.unknowns..]) {
+            *x += change;
+        }
+    }
+
+    pub(crate) fn expand(&mut self, residual: f64) {
         let bubbles = self.resolution.basis.bubbles;
         let (unknowns, inner) = self.change.split_at_mut(self.model.unknowns);
         for (index, beam) in self.model.beams.iter().enumerate() {

@@ -22,6 +22,7 @@ use std::sync::Arc;
 
 use forcewright_base::{
     dense::{Lu, Singular},
+    inertia::inertia,
     maths,
     quadrature::{GaussLegendre, legendre_values},
 };
@@ -36,7 +37,7 @@ pub(crate) struct Basis {
     /// Row per point: the bubbles, then 1 − u, then u.
     values: Vec<f64>,
     /// Row per point: Legendre polynomials of degree 0 … points − 1.
-    legendre: Vec<f64>,
+    pub(crate) legendre: Vec<f64>,
 }
 
 impl Basis {
@@ -60,7 +61,8 @@ impl Basis {
         self.rule.nodes().len()
     }
 
-    fn rows(&self) -> impl Iterator<Item = (f64, &[f64])> {
+    /// Per point: its weight, and the bubbles, 1 − u and u there.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (f64, &[f64])> {
         self.rule.weights().iter().copied().zip(self.values.chunks_exact(self.bubbles + 2))
     }
 }
@@ -86,9 +88,9 @@ pub(crate) struct Constants {
 /// The rest shape at the quadrature points.
 #[derive(Debug)]
 pub(crate) struct RestShape {
-    eta: Vec<f64>,
-    cos: Vec<f64>,
-    sin: Vec<f64>,
+    pub(crate) eta: Vec<f64>,
+    pub(crate) cos: Vec<f64>,
+    pub(crate) sin: Vec<f64>,
 }
 
 impl RestShape {
@@ -109,7 +111,8 @@ pub(crate) struct Coordinates<'a> {
 }
 
 impl Coordinates<'_> {
-    fn rotation(&self, row: &[f64]) -> f64 {
+    /// φ at a point, from its row of the trial functions.
+    pub(crate) fn rotation(&self, row: &[f64]) -> f64 {
         let (inner, linear) = row.split_at(self.bubbles.len());
         let sum: f64 = inner.iter().zip(self.bubbles).map(|(b, a)| b * a).sum();
         sum + (linear[0] * self.ends[0] + linear[1] * self.ends[1])
@@ -129,6 +132,8 @@ pub(crate) struct Element {
     /// Mixed derivatives by (bubbles, end rotations) and (H, V).
     coupling: Vec<f64>,
     lu: Lu,
+    /// Whether the bubbles needed pivoting, so that [`Element::symmetric`] holds nothing.
+    pivoted: bool,
     /// Factors of the bubbles' part, `bubbles × bubbles`.
     symmetric: Vec<f64>,
     /// Condensation: bubbles' answer to unit (`φ_A`, `φ_B`, H, V) and to their own residual, five columns.
@@ -147,6 +152,7 @@ impl Element {
             residual: vec![0.0; n],
             coupling: vec![0.0; n * 2],
             lu: Lu::new(),
+            pivoted: false,
             symmetric: vec![0.0; bubbles * bubbles],
             answer: vec![0.0; bubbles * 5],
             matrix: [[0.0; 4]; 4],
@@ -233,11 +239,12 @@ impl Element {
             answer[2..4].copy_from_slice(&self.coupling[2 * row..2 * row + 2]);
             answer[4] = self.residual[row];
         }
-        if self.factor_symmetric(bubbles, c.bending) {
-            self.solve_symmetric(bubbles);
-        } else {
+        self.pivoted = !self.factor_symmetric(bubbles, c.bending);
+        if self.pivoted {
             self.lu.factor(bubbles, n, &self.hessian)?;
             self.lu.solve_columns(&mut self.answer, 5);
+        } else {
+            self.solve_symmetric(bubbles);
         }
         for end in 0..2 {
             let row = bubbles + end;
@@ -310,6 +317,50 @@ impl Element {
                 for j in 0..5 {
                     x[j] -= factor * rest[j];
                 }
+            }
+        }
+    }
+
+    /// Number of negative eigenvalues of the bubbles' second derivatives.
+    pub(crate) fn negative_bubbles(&self) -> usize {
+        let bubbles = self.residual.len() - 2;
+        if self.pivoted {
+            inertia(bubbles, bubbles + 2, &self.hessian).negative
+        } else {
+            (0..bubbles).filter(|k| self.symmetric[k * bubbles + k] < 0.0).count()
+        }
+    }
+
+    /// Factors by which (`φ_A`, `φ_B`, H, V) and the residual enter −Σ `row_k` `change_k` over the bubbles.
+    pub(crate) fn project(&self, row: &[f64]) -> [f64; 5] {
+        let mut sum = [0.0; 5];
+        for (weight, answer) in row.iter().zip(self.answer.chunks_exact(5)) {
+            for (target, value) in sum.iter_mut().zip(answer) {
+                *target += weight * value;
+            }
+        }
+        sum
+    }
+
+    /// Replaces a right-hand side of the bubbles by their answer to it with ends and force held.
+    pub(crate) fn solve_inner(&mut self, rhs: &mut [f64]) {
+        if self.pivoted {
+            self.lu.solve(rhs);
+            return;
+        }
+        let bubbles = rhs.len();
+        for row in 1..bubbles {
+            let (done, rest) = rhs.split_at_mut(row);
+            let factors = &self.symmetric[row * bubbles..row * bubbles + row];
+            rest[0] -= factors.iter().zip(done.iter()).map(|(f, x)| f * x).sum::<f64>();
+        }
+        for (row, x) in rhs.iter_mut().enumerate() {
+            *x *= self.symmetric[row * bubbles + row];
+        }
+        for row in (1..bubbles).rev() {
+            let (head, rest) = rhs.split_at_mut(row);
+            for (x, factor) in head.iter_mut().zip(&self.symmetric[row * bubbles..row * bubbles + row]) {
+                *x -= factor * rest[0];
             }
         }
     }

@@ -175,6 +175,11 @@ pub enum Status {
         /// The budget.
         limit: u64,
     },
+    /// The path was followed through limit points for as long as is sensible, but did not come to the last station.
+    TooLong {
+        /// The control at which it ended.
+        control: f64,
+    },
     /// The caller asked to stop.
     Stopped {
         /// The largest control reached.
@@ -218,6 +223,10 @@ impl fmt::Display for Status {
             Self::IterationLimit { control, limit } => {
                 write!(f, "stopped at {control:.6e} after {limit} Newton iterations; ask for a shorter range or a larger budget")
             }
+            Self::TooLong { control } => write!(
+                f,
+                "the path was given up at {control:.6e}: it winds on without coming to the end of the range; ask for a shorter range"
+            ),
             Self::Stopped { control } => write!(f, "stopped on request at {control:.6e}"),
         }
     }

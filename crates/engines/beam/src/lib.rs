@@ -14,23 +14,29 @@
 //!
 //! SI units throughout. The same input gives the same bits on every machine.
 
+mod arclength;
 mod assembly;
 mod counters;
 mod element;
 mod error;
 mod fast;
+mod gradient;
+mod follow;
 mod network;
 mod path;
 mod section;
 mod shape;
+mod stability;
 mod state;
 mod stepping;
 
 pub use counters::Counters;
 pub use error::{NetworkError, PathError, Status};
 pub use fast::{CurveSolver, Response};
-pub use network::{Beam, Drive, Joint, Network, Node, Rotation, Settings, Support, Theory};
+pub use gradient::{Axis, BeamGradient, ChordSensitivity, Gradient, GradientError, Gradients, Output, Parameter};
+pub use network::{Beam, Drive, Follow, Joint, Network, Node, Rotation, Settings, Support, Theory};
 pub use path::{Path, trace};
 pub use section::Section;
 pub use shape::{Shape, ShapeError};
+pub use stability::{Bifurcation, Fold, Jump};
 pub use state::{BeamState, Face, NodeState, PeakStress, Point};

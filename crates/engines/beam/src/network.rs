@@ -143,11 +143,25 @@ pub struct Settings {
     pub accuracy: f64,
     /// Budget of Newton iterations for the whole call, so that every call ends. Default 50 000.
     pub iteration_limit: u64,
+    /// What happens at a limit point of the control. Default [`Follow::StopAtLimit`].
+    pub follow: Follow,
+}
+
+/// What happens where the control cannot grow any further along the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Follow {
+    /// The path ends there.
+    #[default]
+    StopAtLimit,
+    /// The path is followed by its arc length through all limit points until the control reaches the last station, or until
+    /// rotations and displacements have changed by more than any mechanism needs. The result is in [`crate::Path::whole`];
+    /// [`crate::Path::points`] and [`crate::Path::status`] are the same as without. Costs a few times as much.
+    ToEnd,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { theory: Theory::default(), accuracy: 1e-8, iteration_limit: 50_000 }
+        Self { theory: Theory::default(), accuracy: 1e-8, iteration_limit: 50_000, follow: Follow::default() }
     }
 }
 

@@ -6,13 +6,15 @@ use crate::{
     assembly::{Model, Resolution},
     counters::Counters,
     error::{NetworkError, PathError, Status},
-    network::{Network, Settings},
+    follow::{Followed, Start, bifurcations, follow},
+    network::{Follow, Network, Settings},
+    stability::{Bifurcation, Fold, Jump},
     state::Point,
     stepping::{Knot, Run, Stepper, interpolate},
 };
 
 /// Polynomial degrees of the rotation of a beam that are tried in turn.
-const DEGREES: [usize; 8] = [6, 9, 12, 16, 22, 30, 38, 48];
+pub(crate) const DEGREES: [usize; 8] = [6, 9, 12, 16, 22, 30, 38, 48];
 
 /// The first degree worth trying: two degrees too low would be computed for nothing.
 fn first_degree(accuracy: f64) -> usize {
@@ -42,6 +44,21 @@ pub struct Path {
     pub degree: usize,
     /// Work done, all resolutions together.
     pub counters: Counters,
+    /// With [`Follow::ToEnd`] the complete equilibrium path in its own order, through all limit points to the last station: every
+    /// step, every limit point, every landing of a jump, and every station each time that the path passes it. Stretches on which the
+    /// control falls, and unstable ones, are part of it; [`Point::branch`] and [`Point::instability`] tell them apart. Empty otherwise.
+    ///
+    /// A device that is driven slowly passes through the points before the first of [`Path::jumps`], then through those from its
+    /// landing to the next one, and so on.
+    pub whole: Vec<Point>,
+    /// How [`Path::whole`] ended.
+    pub whole_status: Status,
+    /// Limit points of the control in path order; the control falls after the first, rises after the second, and so on.
+    pub folds: Vec<Fold>,
+    /// What a slowly driven device jumps over.
+    pub jumps: Vec<Jump>,
+    /// Where stability changes without a limit point, in path order, with and without [`Follow::ToEnd`].
+    pub bifurcations: Vec<Bifurcation>,
     model: Arc<Model>,
     resolution: Arc<Resolution>,
     knots: Arc<Vec<Knot>>,
@@ -108,11 +125,12 @@ pub fn trace(
     let mut coarser: Option<(Run, Arc<Resolution>)> = None;
     let mut error_estimate = None;
     let mut level = 0;
+    let natural = if settings.follow == Follow::ToEnd { 0.5 } else { 1.0 };
     loop {
         let resolution = Arc::new(Resolution::new(&model, degrees[level]));
         // Half of what is left for each level: the number of levels is not known beforehand.
         let (done, share) = (1.0 - halves(level), halves(level + 1));
-        let mut part = |fraction: f64| progress(done + share * fraction);
+        let mut part = |fraction: f64| progress(natural * (done + share * fraction));
         let visited = if level == 0 { &sample } else { stations };
         let run = Stepper::new(&model, &resolution, settings.iteration_limit, &mut counters, &mut part).run(visited);
         let hopeless = matches!(
@@ -127,7 +145,11 @@ pub fn trace(
         }
         level += 1;
         if hopeless || resolved || level == degrees.len() {
-            return Ok(finish(model, (run, resolution), coarser, error_estimate, accuracy, counters));
+            let mut path = finish(model, (run, resolution), coarser, error_estimate, accuracy);
+            let mut rest = |fraction: f64| progress(0.5 + 0.5 * fraction);
+            path.finish_whole(stations, settings, &mut counters, &mut rest);
+            path.counters = counters;
+            return Ok(path);
         }
         coarser = Some((run, resolution));
     }
@@ -166,7 +188,6 @@ fn finish(
     coarser: Option<(Run, Arc<Resolution>)>,
     error_estimate: Option<f64>,
     accuracy: f64,
-    counters: Counters,
 ) -> Path {
     let status = match finest.0.status {
         Status::Complete => match error_estimate {
@@ -180,11 +201,25 @@ fn finish(
         Some(before) if cut_short && before.0.knots.len() > finest.0.knots.len() => before,
         _ => finest,
     };
-    Path { points: run.points, status, error_estimate, degree: resolution.degree, counters, model, resolution, knots: Arc::new(run.knots) }
+    Path {
+        points: run.points,
+        status,
+        error_estimate,
+        degree: resolution.degree,
+        counters: Counters::default(),
+        whole: Vec::new(),
+        whole_status: status,
+        folds: Vec::new(),
+        jumps: Vec::new(),
+        bifurcations: Vec::new(),
+        model,
+        resolution,
+        knots: Arc::new(run.knots),
+    }
 }
 
 /// Whether two resolutions ended alike.
-fn same_end(a: &Status, b: &Status) -> bool {
+pub(crate) fn same_end(a: &Status, b: &Status) -> bool {
     match (a, b) {
         (Status::Complete, Status::Complete) => true,
         (Status::NoEquilibriumBeyond { control: a }, Status::NoEquilibriumBeyond { control: b })
@@ -226,9 +261,28 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 impl Path {
+    /// The equations of the path.
+    pub(crate) fn equations(&self) -> (&Model, &Resolution) {
+        (&self.model, &self.resolution)
+    }
+
     /// The largest control reached, in the unit of the drive.
     pub fn reach(&self) -> f64 {
         self.knots.last().map_or(0.0, |k| k.control * self.model.control_unit())
+    }
+
+    /// Adds what lies beyond limit points, if asked for, and bifurcations.
+    fn finish_whole(&mut self, stations: &[f64], settings: &Settings, counters: &mut Counters, progress: &mut dyn FnMut(f64) -> bool) {
+        let start = Start { model: &self.model, resolution: &self.resolution, knots: &self.knots, status: self.status };
+        let followed = match settings.follow {
+            Follow::StopAtLimit => Followed { bifurcations: bifurcations(&start, settings, counters), ..Followed::default() },
+            Follow::ToEnd => follow(&start, stations, settings, counters, progress),
+        };
+        if settings.follow == Follow::ToEnd {
+            self.whole_status = followed.status;
+        }
+        (self.whole, self.folds, self.jumps) = (followed.whole, followed.folds, followed.jumps);
+        self.bifurcations = followed.bifurcations;
     }
 
     /// The exact equilibrium at any control between 0 and [`Path::reach`].

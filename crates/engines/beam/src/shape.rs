@@ -165,6 +165,30 @@ impl Shape {
         self.point_m(1.0)
     }
 
+    /// ∫ uᵏ (cos η, sin η) du over the whole beam for k = 0 … m. Accurate to rounding.
+    pub(crate) fn direction_moments(&self) -> Vec<[f64; 2]> {
+        let mut sums = vec![[0.0; 2]; self.angle_rad.len()];
+        let mut panels = 1.0;
+        while panels * PANEL_TURN_RAD < turn_bound(&self.angle_rad) {
+            panels += 1.0;
+        }
+        let mut start = 0.0;
+        while start < panels {
+            for (&node, &weight) in PANEL_RULE.nodes().iter().zip(PANEL_RULE.weights()) {
+                let u = (start + node) / panels;
+                let (sin, cos) = maths::sin_cos(self.angle_at(u));
+                let mut factor = weight / panels;
+                for sum in &mut sums {
+                    sum[0] += factor * cos;
+                    sum[1] += factor * sin;
+                    factor *= u;
+                }
+            }
+            start += 1.0;
+        }
+        sums
+    }
+
     /// The same beam run from its end to its start.
     pub fn reversed(&self) -> Self {
         // η_r(v) = η(1 − v) + π, expanded in powers of v by repeated synthetic division (Taylor shift to 1).

@@ -26,8 +26,16 @@ pub struct Point {
     /// where the network pushes back.
     pub force: f64,
     /// Its derivative by the displacement, N/m or N·m/rad, from the tangent of the equations (no differences); relative accuracy
-    /// about 1e-8.
+    /// about 1e-8. Very large at a limit point of the displacement.
     pub stiffness: f64,
+    /// Number of independent motions, small and compatible with supports and drive, along which the equilibrium is unstable; 0 if
+    /// it is stable. The control is held meanwhile: the displacement under a kinematic drive, so that its motion does not count,
+    /// or a dead load, which moves freely.
+    ///
+    /// Counted as negative eigenvalues of the symmetric tangent of all equations less the number of its multipliers, two per beam.
+    pub instability: usize,
+    /// On which stretch of the path: the number of limit points of the control passed before.
+    pub branch: usize,
     /// Strain energy, J.
     pub energy_j: f64,
     /// The nodes, in the order of the network.
@@ -189,6 +197,10 @@ impl BeamState {
         state.end_moment_nm = state.moment_nm(1.0);
         state.peak = state.find_peak(sampling);
         state
+    }
+
+    pub(crate) fn info(&self) -> &BeamInfo {
+        &self.info
     }
 
     /// Rotation φ(u) and its slope dφ/du, rad.

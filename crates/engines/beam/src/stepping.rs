@@ -9,21 +9,21 @@ use crate::{
 };
 
 /// Largest change of a rotation in one step, rad.
-const LARGEST_TURN: f64 = 0.15;
+pub(crate) const LARGEST_TURN: f64 = 0.15;
 /// A displacement counts this many times as much as a rotation, so that no node moves more than 1/40 of the longest beam in a step.
 /// With steps of that size no path of 60 random designs left its branch.
 const TRAVEL_WEIGHT: f64 = 40.0 * LARGEST_TURN;
 /// Largest distance between prediction and solution, rad: more may mean another branch.
-const LARGEST_CORRECTION: f64 = 0.02;
+pub(crate) const LARGEST_CORRECTION: f64 = 0.02;
 /// Largest part of the change in one step that the tangents at its ends leave unexplained.
-const LARGEST_DEFECT: f64 = 0.1;
+pub(crate) const LARGEST_DEFECT: f64 = 0.1;
 /// Newton's method ends when a correction is below this, rad. State and reaction are then right to its square, the tangent to itself.
-const CONVERGED: f64 = 1e-8;
+pub(crate) const CONVERGED: f64 = 1e-8;
 /// Corrections that stop shrinking below this are rounding.
-const ROUNDING: f64 = 1e-7;
-const MOST_ITERATIONS: u32 = 10;
+pub(crate) const ROUNDING: f64 = 1e-7;
+pub(crate) const MOST_ITERATIONS: u32 = 10;
 /// Steps are not cut below this fraction of the first one, or of the way behind if that is shorter.
-const SMALLEST_STEP: f64 = 1e-8;
+pub(crate) const SMALLEST_STEP: f64 = 1e-8;
 /// The state moves this many times faster than ever before: the signature of a limit point at the smallest step.
 const RUNAWAY: f64 = 100.0;
 
@@ -33,6 +33,8 @@ pub(crate) struct Knot {
     pub(crate) control: f64,
     pub(crate) state: Vec<f64>,
     pub(crate) tangent: Vec<f64>,
+    /// Number of unstable motions.
+    pub(crate) instability: usize,
 }
 
 /// A path at one resolution.
@@ -63,13 +65,13 @@ fn hermite(a: &Knot, b: &Knot, control: f64, out: &mut [f64]) {
 }
 
 /// Why a correction failed.
-enum Failure {
+pub(crate) enum Failure {
     Diverged,
     OutOfBudget,
 }
 
 /// How a step ended that was not accepted for good.
-enum Interrupted {
+pub(crate) enum Interrupted {
     Rejected,
     OutOfBudget,
     Stopped,
@@ -77,16 +79,16 @@ enum Interrupted {
 
 /// Walks along one path.
 pub(crate) struct Stepper<'a> {
-    system: System<'a>,
+    pub(crate) system: System<'a>,
     sampling: Sampling,
     /// Weight of each entry of a state in distances: rotations 1, displacements [`TRAVEL_WEIGHT`], forces 0.
-    weights: Vec<f64>,
-    budget: u64,
-    counters: &'a mut Counters,
-    progress: &'a mut dyn FnMut(f64) -> bool,
-    state: Vec<f64>,
-    predicted: Vec<f64>,
-    reaction: f64,
+    pub(crate) weights: Vec<f64>,
+    pub(crate) budget: u64,
+    pub(crate) counters: &'a mut Counters,
+    pub(crate) progress: &'a mut dyn FnMut(f64) -> bool,
+    pub(crate) state: Vec<f64>,
+    pub(crate) predicted: Vec<f64>,
+    pub(crate) reaction: f64,
 }
 
 impl<'a> Stepper<'a> {
@@ -261,7 +263,7 @@ impl<'a> Stepper<'a> {
 
     /// Newton's method from [`Stepper::state`]. On success the system is linearised at a state that differs by less than
     /// [`CONVERGED`], and its last correction is applied.
-    fn correct(&mut self, control: f64) -> Result<(), Failure> {
+    pub(crate) fn correct(&mut self, control: f64) -> Result<(), Failure> {
         let mut last = f64::INFINITY;
         for iteration in 0..MOST_ITERATIONS {
             if self.counters.newton_iterations >= self.budget {
@@ -292,12 +294,12 @@ impl<'a> Stepper<'a> {
     }
 
     /// Weighted size of motions.
-    fn size(&self, v: &[f64]) -> f64 {
+    pub(crate) fn size(&self, v: &[f64]) -> f64 {
         v.iter().zip(&self.weights).fold(0.0, |m, (v, w)| larger(m, (v * w).abs()))
     }
 
     /// Size of the Newton step: motions, and forces relative to the largest.
-    fn correction_size(&self) -> f64 {
+    pub(crate) fn correction_size(&self) -> f64 {
         let change = &self.system.change;
         let (mut force, mut force_change) = (1.0_f64, 0.0_f64);
         for beam in &self.system.model.beams {
@@ -310,7 +312,7 @@ impl<'a> Stepper<'a> {
         larger(self.size(change), 1e-2 * force_change / force)
     }
 
-    fn distance_from_prediction(&self) -> f64 {
+    pub(crate) fn distance_from_prediction(&self) -> f64 {
         let pairs = self.state.iter().zip(&self.predicted).zip(&self.weights);
         pairs.fold(0.0, |m, ((x, p), w)| larger(m, ((x - p) * w).abs()))
     }
@@ -330,7 +332,8 @@ impl<'a> Stepper<'a> {
 
     /// Stores the converged state and the tangent in [`System::change`].
     fn keep(&mut self, knots: &mut Vec<Knot>, control: f64) {
-        knots.push(Knot { control, state: self.state.clone(), tangent: self.system.change.clone() });
+        let instability = self.instability();
+        knots.push(Knot { control, state: self.state.clone(), tangent: self.system.change.clone(), instability });
     }
 
     fn why_stuck(&self, knots: &[Knot], control: f64) -> Status {
@@ -356,7 +359,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// Results in SI units for the state that was just linearised.
-    fn point(&self, x: &[f64], tangent: &[f64], control: f64) -> Point {
+    pub(crate) fn point(&self, x: &[f64], tangent: &[f64], control: f64) -> Point {
         let (model, resolution) = (self.system.model, self.system.resolution);
         let (length, force) = (model.length_m, model.force_n);
         let mut energy = 0.0;
@@ -388,6 +391,8 @@ impl<'a> Stepper<'a> {
             displacement,
             force: reaction,
             stiffness,
+            instability: self.instability(),
+            branch: 0,
             energy_j: energy * force * length,
             nodes: model.nodes.iter().enumerate().map(motion).collect(),
             beams,
@@ -396,7 +401,7 @@ impl<'a> Stepper<'a> {
 }
 
 /// Length of the next step after one of length `taken` whose prediction was wrong by `distance`.
-fn next_step(step: f64, taken: f64, distance: f64) -> f64 {
+pub(crate) fn next_step(step: f64, taken: f64, distance: f64) -> f64 {
     if distance > 0.5 * LARGEST_CORRECTION {
         0.7 * taken
     } else if distance < 0.1 * LARGEST_CORRECTION {
@@ -412,6 +417,6 @@ fn largest(values: impl Iterator<Item = f64>) -> (usize, f64) {
 }
 
 /// Maximum that keeps NaN.
-fn larger(a: f64, b: f64) -> f64 {
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

@@ -1,0 +1,117 @@
+//! Every code of the project file, met with the real family: none is explained in vain, none is emitted without an explanation.
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use common::EXAMPLE;
+use forcewright::{Choices, Loaded};
+
+/// A change of the example (from, to) and the code that it brings.
+const EDITS: &[(&str, &str, &str)] = &[
+    ("E0101", "schema = 1", "schema = 1\nextends = \"none.toml\""),
+    ("E0105", "depth = \"10 mm\"", "depth = \"10 mm"),
+    ("E0106", "depth = \"10 mm\"", "depth = \"10 mm\"\ndepth = \"10 mm\""),
+    ("E0107", "1.3092", "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[["),
+    ("E0108", "schema = 1", "schema = 1\nextends = \"a.toml\""),
+    ("E0201", "\"10 mm\"", "\"10 N\""),
+    ("E0202", "\"10 mm\"", "\"ten mm\""),
+    ("E0203", "\"10 mm\"", "\"10 mmm\""),
+    ("E0204", "\"10 mm\"", "\"-10 mm\""),
+    ("E0205", "\"10 mm\"", "nan"),
+    ("E0206", "\"10 mm\"", "true"),
+    ("E0207", "± 0.02 mm", "± 0.02 N"),
+    ("E0208", "\"10 mm\"", "10"),
+    ("E0301", "depth = ", "depht = "),
+    ("E0302", "depth = \"10 mm\"", ""),
+    ("E0302", "bend = [1.3092, -1.5707]", ""),
+    ("E0302", "use = \"POM-C\"", ""),
+    ("E0302", "stress = { safety_factor = 1.5 }", "stress = {}"),
+    ("E0303", "\"clamped\"", "\"clampt\""),
+    ("E0304", "[\"n1\", \"n3\"]", "[\"n1\", \"n33\"]"),
+    ("E0304", "bend = [1.3092, -1.5707]", "bend = [1.3092, -1.5707]\nhinged = \"n2\""),
+    ("E0305", "bend = [1.3092, -1.5707]", "bend = [1.3092, -1.5707]\nstraight = true"),
+    ("E0305", "{ safety_factor = 1.5 }", "{ safety_factor = 1.5, max = \"50 MPa\" }"),
+    ("E0306", "travel = \"13.6 mm\"", "travel = \"13.6 mm\"\nforce = \"1 N\""),
+    ("E0306", "[variants.paper]", "[model]\njoints = \"overlap\"\n[variants.paper]"),
+    ("E0307", "name = \"b2\"", "name = \"b1\""),
+    ("E0308", "\"POM-C\"", "\"POM-X\""),
+    ("E0309", "\"compliant\"", "\"complaint\""),
+    ("E0311", "[\"n1\", \"n3\"]", "[\"n1\"]"),
+    ("W0101", "[layout]", "[optimise]\nx = 1\n[layout]"),
+    ("E0501", "n3 = { at = [\"30.5 mm\", \"18.77 mm\"] }", "n3 = {}"),
+    ("E0502", "[\"n1\", \"n3\"]", "[\"n3\", \"n3\"]"),
+    ("E0502", "bend = [1.3092, -1.5707]", "angle = [1.0, 1.3, -1.5]\nlength = \"34 mm\""),
+    ("E0503", "[\"34.5 mm\", \"0 mm\"]", "[\"30.5 mm\", \"18.77 mm\"]"),
+    ("E0504", ", direction = [0, 1]", ""),
+    ("E0505", ", support = \"slider\", direction = [0, 1]", ""),
+    ("E0506", "direction = [0, 1]", "direction = [1, 0]"),
+    ("E0507", "\"x = 0\"", "\"z = 0\""),
+    ("E0508", "[0, -1]", "[0.1, -1]"),
+    ("E0509", "thickness = \"1 mm ± 0.02 mm\"", "thickness = \"1e-200 m\""),
+    ("E0510", "[design.nodes]", "[design.nodes]\nn9 = { at = [\"0 mm\", \"0 mm\"] }"),
+];
+
+/// Codes that no edit of a text can bring here, and where they are met instead.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("E0102", "bytes that are no text: tests of hostile files"),
+    ("E0103", "a file too large: tests of hostile files"),
+    ("E0104", "not a file: tests of hostile files"),
+    ("E0110", "below, by a variant"),
+    ("E0111", "below, by a setting"),
+    ("W0501", "a warning of the analysis"),
+    ("W0502", "a warning of the analysis"),
+    ("W0503", "a warning of the analysis"),
+    ("W0504", "a warning of the analysis"),
+    ("W0505", "a warning of the analysis"),
+];
+
+fn codes_of(text: &str, choices: &Choices) -> Vec<&'static str> {
+    match Loaded::from_text("a.toml", text, choices) {
+        Ok(loaded) => loaded.project.diagnostics.warnings().iter().map(|d| d.code).collect(),
+        Err(refused) => {
+            let shown = refused.render(false);
+            for diagnostic in refused.diagnostics.in_file_order() {
+                assert!(diagnostic.span.is_some(), "{} has no place:\n{shown}", diagnostic.code);
+                assert!(diagnostic.help.as_ref().is_some_and(|h| !h.is_empty()), "{} has no help:\n{shown}", diagnostic.code);
+            }
+            refused.diagnostics.in_file_order().iter().map(|d| d.code).collect()
+        }
+    }
+}
+
+#[test]
+fn every_code_is_met_and_every_code_met_is_explained() {
+    let mut met = BTreeSet::new();
+    let mut wrong = Vec::new();
+    for (code, from, to) in EDITS {
+        assert!(EXAMPLE.contains(from), "{from} is not in the example");
+        let text = EXAMPLE.replacen(from, to, 1);
+        // E0505: nothing may hold the network.
+        let text = if *code == "E0505" { text.replace(", support = \"clamped\"", "") } else { text };
+        let found = codes_of(&text, &Choices::default());
+        if !found.contains(code) {
+            wrong.push(format!("{code}: {to} brings {found:?}"));
+        }
+        met.extend(found);
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    let none = Choices { variant: Some("none".to_owned()), set: vec!["none".to_owned()] };
+    assert_eq!(codes_of(EXAMPLE, &none), ["E0110", "E0111"]);
+    let known: BTreeSet<&str> = forcewright::explanations().map(|e| e.code).collect();
+    for code in &met {
+        assert!(known.contains(code), "{code} is not explained");
+    }
+    for code in known.iter().filter(|c| c.starts_with('E') || c.starts_with('W')) {
+        let elsewhere = ELSEWHERE.iter().any(|(c, _)| c == code);
+        assert!(met.contains(code) != elsewhere, "{code} is never met, or is met although it is listed as an exception");
+    }
+}
+
+#[test]
+fn explanations_are_complete_and_unique() {
+    let codes: Vec<&str> = forcewright::explanations().map(|e| e.code).collect();
+    let unique: BTreeSet<&str> = codes.iter().copied().collect();
+    assert_eq!(codes.len(), unique.len());
+    assert!(forcewright::explanations().all(|e| !e.title.is_empty() && e.text.len() > 20));
+}

@@ -1,0 +1,91 @@
+//! Units as people misspell them.
+
+/// What is often written for a unit, and cannot be found by likeness.
+pub(super) const SPELLINGS: &[(&str, &str)] = &[
+    ("nm", "N*m"),
+    ("nmm", "N*mm"),
+    ("ncm", "N*cm"),
+    ("knm", "kN*m"),
+    ("mnm", "mN*m"),
+    ("ft-lb", "lbf*ft"),
+    ("lbin", "lbf*in"),
+    ("mm2", "mm^2"),
+    ("mm3", "mm^3"),
+    ("mm4", "mm^4"),
+    ("cm2", "cm^2"),
+    ("cm3", "cm^3"),
+    ("m2", "m^2"),
+    ("m3", "m^3"),
+    ("s2", "s^2"),
+    ("kgm2", "kg*m^2"),
+    ("millimetre", "mm"),
+    ("millimetres", "mm"),
+    ("millimeter", "mm"),
+    ("millimeters", "mm"),
+    ("centimetre", "cm"),
+    ("centimeter", "cm"),
+    ("metre", "m"),
+    ("metres", "m"),
+    ("meter", "m"),
+    ("meters", "m"),
+    ("mtr", "m"),
+    ("micron", "µm"),
+    ("microns", "µm"),
+    ("mu", "µm"),
+    ("inch", "in"),
+    ("inches", "in"),
+    ("\"", "in"),
+    ("''", "in"),
+    ("'", "ft"),
+    ("foot", "ft"),
+    ("feet", "ft"),
+    ("newton", "N"),
+    ("newtons", "N"),
+    ("pascal", "Pa"),
+    ("mega-pascal", "MPa"),
+    ("megapascal", "MPa"),
+    ("gigapascal", "GPa"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("grad", "deg"),
+    ("º", "deg"),
+    ("radian", "rad"),
+    ("radians", "rad"),
+    ("turns", "turn"),
+    ("rotations", "turn"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("sec", "s"),
+    ("secs", "s"),
+    ("minute", "min"),
+    ("minutes", "min"),
+    ("hour", "h"),
+    ("hours", "h"),
+    ("hr", "h"),
+    ("gram", "g"),
+    ("grams", "g"),
+    ("gr", "g"),
+    ("kilogram", "kg"),
+    ("kilograms", "kg"),
+    ("kilo", "kg"),
+    ("kp", "kgf"),
+    ("lbs", "lb"),
+    ("pound", "lb"),
+    ("pounds", "lb"),
+    ("joule", "J"),
+    ("joules", "J"),
+    ("percent", "%"),
+    ("pct", "%"),
+];
+
+/// The unit that was probably meant: right but for capitals, a usual spelling, or a misspelling.
+pub(super) fn suggestion<I: Iterator<Item = &'static str>>(name: &str, symbols: impl Fn() -> I) -> Option<&'static str> {
+    let spelling = || {
+        let plain = name.to_lowercase();
+        SPELLINGS.iter().find(|(typed, _)| *typed == plain).map(|(_, meant)| *meant)
+    };
+    // `Nm` is a torque without its point, not a misspelt nanometre; `NM` and `Mm` are capitals.
+    let capitals = || symbols().find(|s| s.to_lowercase() == name.to_lowercase());
+    if name.starts_with('N') { spelling().or_else(capitals) } else { capitals().or_else(spelling) }
+        .or_else(|| crate::text::closest(name, symbols()))
+}
