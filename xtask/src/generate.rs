@@ -46,6 +46,11 @@ const GENERATED: &[Generated] = &[
     Generated { file: "ARCHITECTURE.md", source: Source::Crates, region: Region::Between("crates") },
     Generated { file: "docs/reference/cli.md", source: Source::Help, region: Region::Remarked },
     Generated { file: "docs/reference/codes.md", source: Source::Printed(&["explain", "--all"]), region: Region::Remarked },
+    Generated {
+        file: "docs/reference/materials.md",
+        source: Source::Printed(&["materials", "--format", "markdown"]),
+        region: Region::Remarked,
+    },
     Generated { file: "docs/reference/compliant.schema.json", source: Source::Printed(&["schema", "compliant"]), region: Region::Whole },
     Generated {
         file: "docs/reference/compliant-parameters.md",

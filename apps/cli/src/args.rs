@@ -17,6 +17,7 @@ pub(crate) fn command() -> Command {
         .subcommand(solve())
         .subcommand(reproduce())
         .subcommand(explain())
+        .subcommand(materials())
         .subcommand(schema())
         .subcommand(completions())
 }
@@ -95,6 +96,12 @@ fn explain() -> Command {
         .about("Explain the code of a check, an error or a warning")
         .arg(Arg::new("code").value_name("CODE").required_unless_present("all").help("Such as COMP002 or E0201"))
         .arg(Arg::new("all").long("all").action(ArgAction::SetTrue).help("Print every code, as Markdown"))
+}
+
+fn materials() -> Command {
+    Command::new("materials")
+        .about("List the catalogue of materials, with the kind and source of each value")
+        .arg(Arg::new("format").long("format").value_parser(["text", "markdown"]).default_value("text").help("How to print it"))
 }
 
 fn schema() -> Command {

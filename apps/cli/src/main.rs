@@ -27,6 +27,7 @@ fn main() -> ExitCode {
         Some(("solve", m)) => commands::solve::run(m),
         Some(("reproduce", m)) => commands::reproduce::run(m),
         Some(("explain", m)) => commands::explain::run(m),
+        Some(("materials", m)) => commands::materials::run(m),
         Some(("schema", m)) => commands::schema::run(m),
         Some(("completions", m)) => commands::completions::run(m),
         _ => commands::welcome(),

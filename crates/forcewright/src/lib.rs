@@ -21,6 +21,7 @@ mod load;
 pub use forcewright_base as base;
 pub use forcewright_compliant as compliant;
 pub use forcewright_contract as contract;
+pub use forcewright_elements as elements;
 pub use forcewright_model as model;
 pub use forcewright_report as report;
 

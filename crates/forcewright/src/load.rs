@@ -65,7 +65,9 @@ impl Loaded {
 
     fn from_project(mut project: Project) -> Result<Self, Refused> {
         let family = family_of(&mut project);
-        let understood = family.and_then(|f| f.understand(&mut project));
+        // While there is only one family, a file that does not name it well is read as its file, so that other errors are found too.
+        let reader = family.or(if let [only] = FAMILIES { Some(*only) } else { None });
+        let understood = reader.filter(|_| !project.tree.entries.is_empty()).and_then(|f| f.understand(&mut project));
         match (family, understood) {
             (Some(family), Some(understood)) if !project.diagnostics.has_errors() => {
                 Ok(Self { family, input_sha256: hash(&project.sources), project, understood })

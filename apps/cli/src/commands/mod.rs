@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod explain;
+pub(crate) mod materials;
 pub(crate) mod new;
 pub(crate) mod reproduce;
 pub(crate) mod schema;
@@ -24,6 +25,7 @@ pub(crate) fn welcome() -> u8 {
            forcewright new lan-table3                     a project file to edit\n  \
            forcewright solve lan-table3.toml --out out    the curve, the checks, and a report\n  \
            forcewright reproduce lan2010                  the paper's numbers beside ours\n  \
+           forcewright materials                          what `material.use` can name\n  \
            forcewright explain COMP002                    what a check or an error means\n\n\
          forcewright --help lists every command.\n",
     );

@@ -157,6 +157,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         return None;
     }
     check_network(&network, spec, place, diagnostics);
+    check_held(&network, spec, diagnostics);
     if diagnostics.has_errors() {
         return None;
     }
@@ -210,14 +211,13 @@ fn fill_material(material: &mut spec::Material, diagnostics: &mut Diagnostics) -
     if let Some(entry) = &material.catalogue {
         let span = entry.span;
         let Some(found) = materials::find(&entry.value) else {
-            let near = closest(
-                &entry.value,
-                materials::catalogue().iter().flat_map(|m| std::iter::once(m.name.as_str()).chain(m.aliases.iter().map(String::as_str))),
+            let help = "`forcewright materials` lists the catalogue; or leave `use` out and give the values yourself";
+            let near = closest(&entry.value, materials::names());
+            diagnostics.push(
+                Diagnostic::error("E0308", span, "no such material in the catalogue")
+                    .label("not known")
+                    .help(near.map_or_else(|| help.to_owned(), |n| format!("did you mean \"{n}\"? {help}"))),
             );
-            let all = materials::names().collect::<Vec<_>>().join(", ");
-            diagnostics.push(Diagnostic::error("E0308", span, "no such material in the catalogue").label("not known").help(
-                near.map_or_else(|| format!("the catalogue has {all}"), |n| format!("did you mean \"{n}\"? The catalogue has {all}")),
-            ));
             // What is missing for want of the entry need not be reported as well.
             return origin;
         };
@@ -488,10 +488,9 @@ impl Builder<'_> {
     fn section(&mut self) -> Option<Section> {
         let material = &self.spec.material;
         let place = material.present.as_ref().map_or(self.place, |p| p.span);
-        if material.young_modulus.is_none()
-            && material.catalogue.as_ref().is_none_or(|c| materials::find(&c.value).is_some())
-            && material.present.is_some()
-        {
+        // An unknown entry of the catalogue has been reported; what it would have given is not missing as well.
+        let complete = material.present.is_some() && material.catalogue.as_ref().is_none_or(|c| materials::find(&c.value).is_some());
+        if material.young_modulus.is_none() && complete {
             self.error(
                 Diagnostic::error("E0302", place, "`young_modulus` is missing")
                     .label("from this table")
@@ -499,7 +498,7 @@ impl Builder<'_> {
             );
         }
         let poisson = si(material.poisson_ratio.as_ref());
-        if poisson.is_none() && theory_of(self.spec) == Theory::Reissner && material.young_modulus.is_some() {
+        if poisson.is_none() && theory_of(self.spec) == Theory::Reissner && material.young_modulus.is_some() && complete {
             self.error(
                 Diagnostic::error("E0302", place, "`poisson_ratio` is missing")
                     .label("from this table")
@@ -651,6 +650,23 @@ fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut 
                 .label("held by its support")
                 .help("choose a direction that its support allows, or another node")
         }
+        NetworkError::TooLarge { count } => {
+            let list = if spec.design.beams.len() > Network::LARGEST {
+                spec.design.beams.last().map(|b| b.name.span)
+            } else {
+                spec.design.nodes.last().map(|n| n.name.span)
+            };
+            Diagnostic::error("E0311", list.unwrap_or(place), format!("{count} nodes or beams, at most {} are accepted", Network::LARGEST))
+                .label("too many")
+                .help("use `layout.mirror` for a symmetric mechanism, or split it")
+        }
+        NetworkError::Section { beam, what, value } => Diagnostic::error(
+            "E0509",
+            beam_span(beam),
+            format!("{what} of beam `{}` is {value:.3e} in SI units, out of range", beam_name(beam)),
+        )
+        .label("this beam")
+        .help("check thickness, depth and material; the parameter table gives the ranges"),
         other => {
             let span = other_place(&other, &beam_span, &node_span).unwrap_or(place);
             Diagnostic::error("E0509", span, other.to_string()).help("see the parameter table for the accepted range")
@@ -659,11 +675,22 @@ fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut 
     diagnostics.push(diagnostic);
 }
 
+/// Something besides the moved node must hold the mechanism, or it follows the load as a whole.
+fn check_held(network: &Network, spec: &Spec, diagnostics: &mut Diagnostics) {
+    let driven = network.drive.node();
+    let held = network.nodes.iter().enumerate().any(|(i, n)| i != driven && n.support != Support::Free);
+    if !held && let Some(node) = &spec.load.node {
+        diagnostics.push(
+            Diagnostic::error("E0505", node.span, "nothing but the moved node holds the mechanism")
+                .label("it would follow this node as a whole")
+                .help("clamp or pin another node: `support = \"clamped\"`"),
+        );
+    }
+}
+
 fn other_place(error: &NetworkError, beam_span: &dyn Fn(usize) -> Span, node_span: &dyn Fn(usize) -> Span) -> Option<Span> {
     match *error {
-        NetworkError::Section { beam, .. } | NetworkError::Shape { beam, .. } | NetworkError::BeamOnOneNode { beam } => {
-            Some(beam_span(beam))
-        }
+        NetworkError::Shape { beam, .. } | NetworkError::BeamOnOneNode { beam } => Some(beam_span(beam)),
         NetworkError::Position { node } | NetworkError::Direction { node } => Some(node_span(node)),
         _ => None,
     }

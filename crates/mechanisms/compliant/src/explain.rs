@@ -85,4 +85,9 @@ pub(crate) const CODES: &[Explanation] = &[
         "few stations for this curve",
         "Forces at the stations are accurate as stated, but values found between them (limits of ranges, extrema) are interpolated and less accurate.",
     ),
+    code(
+        "W0506",
+        "the computed state is unstable",
+        "With the displacement of the load held, the network could still lower its energy by moving sideways: at the named displacement the path bifurcates, as a straight column does at its buckling load. The computed curve is an equilibrium, but a real part, which is never perfectly symmetric, leaves it. Give the design a small imperfection (a bend, a shifted node) to follow the branch that the part takes.",
+    ),
 ];

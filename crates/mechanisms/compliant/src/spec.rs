@@ -178,6 +178,8 @@ pub(crate) const METHODS: &[Word] = &[
 ];
 
 const LARGEST_M: f64 = 10.0;
+/// A hundredth of a micrometre: below it no beam is made and no travel is meant.
+const SMALLEST_M: f64 = 1e-8;
 
 const STUDY: &str = "it belongs to a study that this version does not have; `solve` does not need it";
 const RESERVED_SECTIONS: &[Reserved] = &[
@@ -289,7 +291,7 @@ impl Describe for Bounds {
 impl Describe for Material {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.text(&Param::new("use", "Entry of the material catalogue; the keys below override its values."), &mut self.catalogue);
-        v.quantity(&Param::new("young_modulus", "Young's modulus E.").of(Dimension::Stress).above(0.0, 1e13), &mut self.young_modulus);
+        v.quantity(&Param::new("young_modulus", "Young's modulus E.").of(Dimension::Stress).within(1e3, 1e13), &mut self.young_modulus);
         v.quantity(
             &Param::new("poisson_ratio", "Poisson's ratio ν; only the shear of the Reissner model uses it.").within(0.0, 0.5),
             &mut self.poisson_ratio,
@@ -313,10 +315,10 @@ impl Describe for Process {
 
 impl Describe for Design {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        let thickness = |doc| Param::new("thickness", doc).of(Dimension::Length).above(0.0, 1.0);
+        let thickness = |doc| Param::new("thickness", doc).of(Dimension::Length).within(SMALLEST_M, 1.0);
         v.quantity(&thickness("In-plane thickness w of all beams that do not give their own."), &mut self.thickness);
         v.quantity(
-            &Param::new("depth", "Out-of-plane depth t of all beams.").of(Dimension::Length).above(0.0, LARGEST_M).required(),
+            &Param::new("depth", "Out-of-plane depth t of all beams.").of(Dimension::Length).within(SMALLEST_M, LARGEST_M).required(),
             &mut self.depth,
         );
         v.members(&Param::new("nodes", "Where beams meet and where the ground holds them.").required(), Form::Table, &mut self.nodes);
@@ -358,8 +360,14 @@ impl Describe for Beam {
                 .within(-50.0, 50.0),
             &mut self.angle,
         );
-        v.quantity(&Param::new("length", "Arc length, with `angle`.").of(Dimension::Length).above(0.0, LARGEST_M), &mut self.length);
-        v.quantity(&Param::new("thickness", "Its own in-plane thickness w.").of(Dimension::Length).above(0.0, 1.0), &mut self.thickness);
+        v.quantity(
+            &Param::new("length", "Arc length, with `angle`.").of(Dimension::Length).within(SMALLEST_M, LARGEST_M),
+            &mut self.length,
+        );
+        v.quantity(
+            &Param::new("thickness", "Its own in-plane thickness w.").of(Dimension::Length).within(SMALLEST_M, 1.0),
+            &mut self.thickness,
+        );
         v.names(&Param::new("hinged", "Ends, by their nodes, that turn freely."), 0, 2, &mut self.hinged);
         v.reserved(RESERVED_BEAM);
     }
@@ -380,7 +388,7 @@ impl Describe for Load {
             &mut self.direction,
         );
         v.quantity(
-            &Param::new("travel", "Largest displacement d.").of(Dimension::Length).above(0.0, LARGEST_M).required(),
+            &Param::new("travel", "Largest displacement d.").of(Dimension::Length).within(SMALLEST_M, LARGEST_M).required(),
             &mut self.travel,
         );
         v.reserved(RESERVED_LOAD);

@@ -139,6 +139,16 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             ),
         });
     }
+    if let Some(point) = behaviour.path.points.iter().find(|p| p.instability > 0) {
+        let from = behaviour.path.bifurcations.first().map_or(point.displacement, |b| b.displacement);
+        all.push(Warning {
+            code: "W0506",
+            message: format!(
+                "from Δ = {} on the computed state is unstable even with the displacement held: a real part leaves it for another shape, and this curve no longer holds",
+                show(from)
+            ),
+        });
+    }
     if behaviour.interpolation_error > 1e-6 {
         all.push(Warning {
             code: "W0505",

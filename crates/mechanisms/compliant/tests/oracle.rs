@@ -321,3 +321,40 @@ fn the_analysis_can_be_stopped() {
     assert!(analysis.outcome.metric("force_at_end").is_none(), "the travel was not reached");
     assert!(!analysis.outcome.requirements_met());
 }
+
+/// A perfectly straight column between its guide and the ground: beyond Euler's load the straight state is unstable, and the result says
+/// so. Both ends keep their angle, so the load is 4π²EI/L²; with the stretching of the Reissner model the displacement there is
+/// known: Δ = F·L/EA.
+#[test]
+fn a_column_beyond_eulers_load_is_reported_as_unstable() {
+    let text = r#"
+schema = 1
+mechanism = "compliant"
+[material]
+young_modulus = "2 GPa"
+poisson_ratio = 0.3
+[design]
+thickness = "1 mm"
+depth = "10 mm"
+nodes.a = { at = ["0 mm", "0 mm"], support = "clamped" }
+nodes.b = { at = ["0 mm", "60 mm"], support = "slider", direction = [0, 1] }
+[[design.beams]]
+name = "column"
+between = ["a", "b"]
+straight = true
+[load]
+node = "b"
+direction = [0, -1]
+travel = "0.1 mm"
+"#;
+    let solved = solve(text, &[]);
+    let (ei, ea, length) = (2e9 * 1e-9 * 1e-2 / 12.0, 2e9 * 1e-5, 60e-3);
+    let euler_n = 4.0 * std::f64::consts::PI * std::f64::consts::PI * ei / (length * length);
+    let shortening_m = euler_n * length / ea;
+    let found = &solved.behaviour.path.bifurcations;
+    assert!(!found.is_empty(), "buckling at {shortening_m} m is inside the travel");
+    // Stretching and shear move the load by about F/EA and F/kGA, a few per mille here.
+    near(found[0].displacement, shortening_m, 1e-2, "displacement at buckling");
+    assert!(outcome(text, &[]).warnings.iter().any(|w| w.code == "W0506"));
+    assert!(!outcome(text, &["load.travel=0.05 mm"]).warnings.iter().any(|w| w.code == "W0506"));
+}
