@@ -136,13 +136,23 @@ pub(crate) fn linearise<const M: usize, const Q: usize>(
     condense(&mut integrals, beams, at, apart, out)
 }
 
-#[allow(clippy::too_many_lines, reason = "long: one loop over the points and the sums it feeds, in the order of the formulas")]
-fn integrate<const M: usize, const Q: usize>(tables: &Tables<M, Q>, beams: &Beams<Q>, at: &Unknowns<M>) -> Integrals<M> {
+/// Integrands at the quadrature points, with the weights and −L, and the sums over them that need no trial function.
+struct AtPoints<const Q: usize> {
+    /// Moment load, its slope by the rotation, and its derivatives by H and V.
+    load: [Lane; Q],
+    slope: [Lane; Q],
+    by_h: [Lane; Q],
+    by_v: [Lane; Q],
+    gap: [Lane; 2],
+    compliance: [Lane; 3],
+}
+
+#[inline]
+fn at_points<const M: usize, const Q: usize>(tables: &Tables<M, Q>, beams: &Beams<Q>, at: &Unknowns<M>) -> AtPoints<Q> {
     let [h, v] = at.force;
     let turn = at.ends[1] - at.ends[0];
     let softness = beams.axial - beams.shear;
     let zero = Lane::ZERO;
-    // Per point: weighted moment load, its slope, and its derivatives by H and V.
     let (mut load, mut slope, mut by_h, mut by_v) = ([zero; Q], [zero; Q], [zero; Q], [zero; Q]);
     let (mut gap, mut compliance) = ([zero; 2], [zero; 3]);
     for q in 0..Q {
@@ -176,6 +186,14 @@ fn integrate<const M: usize, const Q: usize>(tables: &Tables<M, Q>, beams: &Beam
         by_h[q] = w * q_h;
         by_v[q] = w * q_v;
     }
+    AtPoints { load, slope, by_h, by_v, gap, compliance }
+}
+
+#[inline]
+fn integrate<const M: usize, const Q: usize>(tables: &Tables<M, Q>, beams: &Beams<Q>, at: &Unknowns<M>) -> Integrals<M> {
+    let AtPoints { load, slope, by_h, by_v, gap, compliance } = at_points(tables, beams, at);
+    let zero = Lane::ZERO;
+    let turn = at.ends[1] - at.ends[0];
     let mut sums = Integrals {
         inner: [[zero; M]; M],
         outer: [[zero; 5]; M],
