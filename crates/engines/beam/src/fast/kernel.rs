@@ -314,19 +314,9 @@ fn solve<const M: usize>(inner: &[[Lane; M]; M], x: &mut [[Lane; 5]; M]) {
     }
 }
 
-fn condense<const M: usize, const Q: usize>(
-    sums: &mut Integrals<M>,
-    beams: &Beams<Q>,
-    at: &Unknowns<M>,
-    apart: [Lane; 2],
-    out: &mut Condensed<M>,
-) -> Result<(), NeedsPivoting> {
-    let mut negative = [0; LANES];
-    factor(&mut sums.inner, beams.bending, &mut negative)?;
-    out.answer = sums.outer;
-    solve(&sums.inner, &mut out.answer);
-    let answer = &out.answer;
-    // The Schur complement by (φ_A, φ_B, H, V); lower triangle, and the gradient.
+/// The Schur complement by (`φ_A`, `φ_B`, H, V), lower triangle, and the gradient.
+#[inline]
+fn schur<const M: usize>(sums: &Integrals<M>, answer: &[[Lane; 5]; M]) -> ([[Lane; 4]; 4], [Lane; 4]) {
     let mut s = [[Lane::ZERO; 4]; 4];
     let mut g = [sums.ends_residual[0], sums.ends_residual[1], sums.gap[0], sums.gap[1]];
     s[0][0] = sums.ends[0][0];
@@ -348,6 +338,21 @@ fn condense<const M: usize, const Q: usize>(
             g[i] -= left * answer[k][4];
         }
     }
+    (s, g)
+}
+
+fn condense<const M: usize, const Q: usize>(
+    sums: &mut Integrals<M>,
+    beams: &Beams<Q>,
+    at: &Unknowns<M>,
+    apart: [Lane; 2],
+    out: &mut Condensed<M>,
+) -> Result<(), NeedsPivoting> {
+    let mut negative = [0; LANES];
+    factor(&mut sums.inner, beams.bending, &mut negative)?;
+    out.answer = sums.outer;
+    solve(&sums.inner, &mut out.answer);
+    let (s, g) = schur(sums, &out.answer);
     // Eliminate the force: the flexibility block C is negative definite for a stable beam.
     let (c00, c01, c11) = (s[2][2], s[3][2], s[3][3]);
     let determinant = c00 * c11 - c01 * c01;
