@@ -3,7 +3,7 @@
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, Command, ValueHint};
 
-const EXIT_CODES: &str = "Exit codes: 0 requirements met, 1 a requirement missed, 2 error in the file or the call, 3 not converged, 4 input/output, 130 interrupted.";
+const EXIT_CODES: &str = "Exit codes: 0 requirements met, 1 a requirement missed or not assessed, 2 error in the file or the call, 3 travel or accuracy not reached, 4 input/output, 130 interrupted.";
 
 /// The whole command.
 pub(crate) fn command() -> Command {

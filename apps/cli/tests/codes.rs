@@ -48,7 +48,8 @@ const EDITS: &[(&str, &str, &str)] = &[
     ("E0506", "direction = [0, 1]", "direction = [1, 0]"),
     ("E0507", "\"x = 0\"", "\"z = 0\""),
     ("E0508", "[0, -1]", "[0.1, -1]"),
-    ("E0509", "thickness = \"1 mm ± 0.02 mm\"", "thickness = \"1e-200 m\""),
+    ("E0511", "[\"2.5 mm\", \"40 mm\"], support = \"slider\", direction = [0, 1] }", "[\"0 mm\", \"40 mm\"] }"),
+    ("W0507", "travel = \"6 mm\"", "travel = \"6 mm\"\nlimits = { clearance_min = { min = \"1 mm\" } }"),
     ("E0510", "[design.nodes]", "[design.nodes]\nn9 = { at = [\"0 mm\", \"0 mm\"] }"),
 ];
 
@@ -59,11 +60,14 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0104", "not a file: tests of hostile files"),
     ("E0110", "below, by a variant"),
     ("E0111", "below, by a setting"),
+    ("E0509", "what the engine refuses beyond the rules of the file: none is known that a file can reach"),
     ("W0501", "a warning of the analysis"),
     ("W0502", "a warning of the analysis"),
     ("W0503", "a warning of the analysis"),
     ("W0504", "a warning of the analysis"),
     ("W0505", "a warning of the analysis"),
+    ("W0506", "a warning of the analysis"),
+    ("W0508", "a warning of the analysis"),
 ];
 
 fn codes_of(text: &str, choices: &Choices) -> Vec<&'static str> {

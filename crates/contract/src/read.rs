@@ -2,7 +2,7 @@
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, MOST_SHOWN, Span};
 use forcewright_base::text::closest;
-use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit, format_si};
+use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit, format_number, format_si};
 
 use crate::describe::{Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word};
 use crate::paths;
@@ -219,6 +219,15 @@ fn quantity_of(param: &Param, item: &Item) -> Result<Quantity, Box<Diagnostic>> 
         _ => return Err(wrong_type(item, dimension.name(), &format!("a text such as \"{}\"", dimension.example()))),
     };
     check_range(param, quantity.si, &quantity.unit, item.span)?;
+    if let Some(half) = quantity.half_width_si()
+        && !(param.range.holds(quantity.si - half) && param.range.holds(quantity.si + half))
+    {
+        return Err(Box::new(
+            Diagnostic::error("E0207", item.span, format!("within its tolerance, `{}` leaves the values that it may have", param.key))
+                .label("too wide")
+                .help("write a smaller half width"),
+        ));
+    }
     Ok(quantity)
 }
 
@@ -276,9 +285,13 @@ fn check_range(param: &Param, si: f64, unit: &Unit, span: Span) -> Result<(), Bo
         (false, _) => format!("at most {}", show(range.max)),
     };
     Err(Box::new(
-        Diagnostic::error("E0204", span, format!("`{}` is {}, but must be {rule}", param.key, show(si)))
-            .label("out of range")
-            .help(format!("{}: must be {rule}", param.doc.trim_end_matches('.'))),
+        Diagnostic::error("E0204", span, format!("`{}` is {}, but must be {rule}", param.key, show(si))).label("out of range").help(
+            if param.dimension == Dimension::Ratio && range.max <= 1.0 && range.holds(si / 100.0) {
+                format!("did you mean \"{} %\"? (a bare number is a ratio)", format_number(si, 6))
+            } else {
+                format!("{}: must be {rule}", param.doc.trim_end_matches('.'))
+            },
+        ),
     ))
 }
 

@@ -178,9 +178,42 @@ pub fn parse(text: &str, source: SourceId, diagnostics: &mut Diagnostics) -> Tab
         return Table::default();
     }
     let (document, errors) = DeTable::parse_recoverable(text);
+    if errors.iter().any(|e| e.message().contains("duplicate key"))
+        && let Some((start, header)) = repeated_header(text)
+    {
+        // Everything below the second header would be reported as given twice: one error says it all.
+        let span = Span { source, start, end: start + header.len() + 2 };
+        diagnostics.push(
+            Diagnostic::error("E0106", span, format!("the table `[{header}]` is given twice"))
+                .label("second time")
+                .help(format!("for a list of tables write double brackets, `[[{header}]]`, with a `name` in each; otherwise join the two")),
+        );
+        return Table::default();
+    }
     report(text, &errors, Span { source, ..Span::default() }, diagnostics);
     let mut converter = Converter { source, offset: 0, diagnostics };
     converter.table(document.into_inner())
+}
+
+/// The first table header that stands for the second time, and where.
+fn repeated_header(text: &str) -> Option<(usize, &str)> {
+    let mut seen: Vec<&str> = Vec::new();
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let indent = line.len() - line.trim_start().len();
+        let header = line.trim_start().strip_prefix('[').filter(|h| !h.starts_with('[')).and_then(|h| h.split_once(']'));
+        if let Some((header, _)) = header {
+            if seen.contains(&header) {
+                return Some((at + indent, header));
+            }
+            // A file of nothing but headers is hostile, and needs no help with its brackets.
+            if seen.len() < 200 {
+                seen.push(header);
+            }
+        }
+        at += line.len();
+    }
+    None
 }
 
 /// Reports what the parser found wrong with a text that starts at `base`, one syntax error per line: the parser stumbles several
@@ -421,5 +454,14 @@ mod tests {
         let (table, diagnostics) = read("a = \nb = 'ok'\nc = = 2\nb = 'again'\n");
         assert!(diagnostics.in_file_order().len() >= 3);
         assert_eq!(text_at(&table, &["b"]), Some("ok"));
+    }
+
+    #[test]
+    fn a_list_with_single_brackets_is_one_error() {
+        let (_, diagnostics) =
+            read("[design]\na = 1\n[design.beams]\nname = 'b1'\n[design.beams]\nname = 'b2'\n[design.beams]\nname = 'b3'\n");
+        let all = diagnostics.in_file_order();
+        assert_eq!((all.len(), all[0].code), (1, "E0106"));
+        assert!(all[0].help.as_deref().is_some_and(|h| h.contains("[[design.beams]]")));
     }
 }

@@ -11,6 +11,8 @@ pub enum StatusKind {
     Complete,
     /// There is no equilibrium beyond a point of the path (a limit point).
     NoEquilibriumBeyond,
+    /// Beyond a point of the path the equilibrium is unstable: a real part leaves it there (a bifurcation).
+    UnstableBeyond,
     /// The solver could not go on, for a numerical reason that the message names.
     NotConverged,
     /// Computed, but the accuracy asked for was not reached.
@@ -25,6 +27,7 @@ impl StatusKind {
         match self {
             Self::Complete => "complete",
             Self::NoEquilibriumBeyond => "no equilibrium beyond",
+            Self::UnstableBeyond => "unstable beyond",
             Self::NotConverged => "not converged",
             Self::ReducedAccuracy => "reduced accuracy",
             Self::Interrupted => "interrupted",

@@ -27,7 +27,9 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
                     let list = diagnostics_json(&refused);
                     documents.push(json!({ "file": name.to_string(), "variant": choice.variant, "ok": false, "diagnostics": list }));
                     // The variants of a broken file repeat its errors.
-                    break;
+                    if index == 1 {
+                        break;
+                    }
                 }
                 Ok(loaded) => {
                     let sources = &loaded.project.sources;

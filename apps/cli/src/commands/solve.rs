@@ -22,7 +22,14 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let choices = choices(matches);
     let loaded = match Loaded::from_file(&DiskFiles, file, &choices) {
         Ok(loaded) => loaded,
-        Err(refused) => return refuse(&refused, as_json),
+        Err(refused) => {
+            let code = refuse(&refused, as_json);
+            if let Some(folder) = out.filter(|f| f.join("report.html").exists()) {
+                output::narrate(&visible(&format!("note: {} still holds the results of an earlier run", folder.display())));
+                output::narrate("\n");
+            }
+            return code;
+        }
     };
     output::narrate(&loaded.project.diagnostics.render(&loaded.project.sources, output::colour_on_stderr()));
     // Whether the results can be written is found out before the work, not after.
@@ -68,7 +75,9 @@ fn exit_code(outcome: &Outcome) -> u8 {
         StatusKind::Interrupted => exit::INTERRUPTED,
         StatusKind::Complete if outcome.requirements_met() => exit::MET,
         StatusKind::Complete => exit::MISSED,
-        StatusKind::NoEquilibriumBeyond | StatusKind::NotConverged | StatusKind::ReducedAccuracy => exit::NOT_CONVERGED,
+        StatusKind::NoEquilibriumBeyond | StatusKind::UnstableBeyond | StatusKind::NotConverged | StatusKind::ReducedAccuracy => {
+            exit::NOT_CONVERGED
+        }
     }
 }
 
@@ -141,6 +150,15 @@ fn summary(report: &Report) -> String {
     out
 }
 
+/// A relative margin as a signed percentage; beyond ten times the limit only the sign matters.
+fn margin(margin: f64) -> String {
+    match margin {
+        m if m > 10.0 => "> +1000 %".to_owned(),
+        m if m < -10.0 => "< -1000 %".to_owned(),
+        m => format!("{:+.1} %", 100.0 * m),
+    }
+}
+
 fn requirement_table(checks: &[Check]) -> String {
     let mut rows = vec![["", "requirement", "found", "limit", "margin", "code"].map(str::to_owned).to_vec()];
     for check in checks {
@@ -156,7 +174,7 @@ fn requirement_table(checks: &[Check]) -> String {
             check.title.clone(),
             check.value.map_or_else(|| "–".to_owned(), show),
             check.limit.map_or_else(|| "–".to_owned(), |l| format!("{sign} {}", show(l))),
-            check.margin.map_or_else(|| "–".to_owned(), |m| format!("{:+.1} %", 100.0 * m)),
+            check.margin.map_or_else(|| "–".to_owned(), margin),
             check.code.to_owned(),
         ]);
     }

@@ -13,7 +13,7 @@ const CASES: &[(&str, &[&str])] = &[
     ("[design\nthickness = \"1 mm\"", &["E0302 a.toml:1:1", "E0105 a.toml:3:8", "E0301 a.toml:4:1 thickness"]),
     ("[design]\nthickness = 1 mm", &["E0105 a.toml:4:13 1 mm"]),
     ("[design]\nthickness = \"1 mm\"\nthickness = \"2 mm\"", &["E0106 a.toml:5:1 thickness"]),
-    ("[design]\nthickness = \"1 mm\"\n[design]\ndepth = \"1 mm\"", &["E0106 a.toml:5:2 design"]),
+    ("[design]\nthickness = \"1 mm\"\n[design]\ndepth = \"1 mm\"", &["E0106 a.toml:5:1 [design]"]),
     ("[design]\nthickness = [[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[", &["E0107 a.toml:4:45 ["]),
     // Values.
     ("[design]\nthickness = \"1 N\"", &["E0201 a.toml:4:13 \"1 N\""]),

@@ -27,6 +27,8 @@ pub struct Behaviour {
     pub copies: f64,
     /// Whether the whole travel was reached.
     pub whole: bool,
+    /// Where the states become unstable although the displacement is held, m: a real part leaves the computed path there.
+    pub unstable_from_m: Option<f64>,
     /// Interpolation error of the curve relative to the largest force.
     pub interpolation_error: f64,
 }
@@ -70,13 +72,15 @@ impl Behaviour {
     }
 
     fn from_path(path: Path, copies: f64) -> Self {
+        let unstable = path.points.iter().find(|p| p.instability > 0);
+        let unstable_from_m = unstable.map(|p| path.bifurcations.first().map_or(p.displacement, |b| b.displacement.min(p.displacement)));
         let whole = matches!(path.status, Status::Complete | Status::NotResolved { .. });
         let pick = |f: fn(&Point) -> f64, scale: f64| path.points.iter().map(|p| scale * f(p)).collect::<Vec<_>>();
         let curve = (path.points.len() >= 2)
             .then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)));
         let largest = path.points.iter().map(|p| copies * p.force.abs()).fold(0.0, f64::max);
         let interpolation_error = curve.as_ref().map_or(0.0, |c| if largest > 0.0 { c.error_n() / largest } else { 0.0 });
-        Self { path, curve, copies, whole, interpolation_error }
+        Self { path, curve, copies, whole, unstable_from_m, interpolation_error }
     }
 
     /// The largest stress up to the end of the path, refined between stations where it is largest inside.
@@ -216,6 +220,9 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     if let Some(allowable_pa) = design.allowable_pa() {
         m.set("travel_at_allowable_stress", behaviour.travel_at_stress(allowable_pa));
     }
+    // Of a path that ends early these are only the values so far: checks use them, metrics do not.
+    m.stiffness = behaviour.least_stiffness();
+    m.stress = behaviour.largest_stress();
     // The rest is about the whole travel: a path that ends before has no such numbers.
     if !behaviour.whole {
         return m;
@@ -247,9 +254,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
         m.set("band_ratio", within.map_or(0.0, |i| i.length() / travel));
         m.usable = within;
     }
-    m.stiffness = behaviour.least_stiffness();
     m.set("stiffness_min", m.stiffness.map(|(k, _)| k));
-    m.stress = behaviour.largest_stress();
     m.set("stress_max", m.stress.map(|s| s.peak.stress_pa));
     m.set("safety_factor", m.stress.and_then(|s| Some(design.yield_pa? / s.peak.stress_pa)).filter(|f| f.is_finite()));
     m
@@ -311,6 +316,16 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
     let travel = show(design.travel_m);
     let beam = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
     let node = |i: usize| design.node_names.get(i).map_or("?", String::as_str);
+    if let Some(from) = behaviour.unstable_from_m.filter(|_| behaviour.whole) {
+        return model::Status {
+            kind: K::UnstableBeyond,
+            message: format!("the path branches at Δ = {}: beyond, a real part leaves the computed shape sideways", show(from)),
+            advice: Some(
+                "give the design the imperfection of a real part (a small bend, a shifted node) and follow the branch that it takes"
+                    .to_owned(),
+            ),
+        };
+    }
     let (kind, message, advice) = match behaviour.path.status {
         Status::Complete => (K::Complete, format!("the whole travel of {travel} was computed"), None),
         Status::NotResolved { error_estimate, accuracy } => (

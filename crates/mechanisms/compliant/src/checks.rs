@@ -38,25 +38,36 @@ struct Comparison {
     sense: Sense,
     dimension: Dimension,
     display: Unit,
-    /// Takes the place of the limit's size in the margin where the limit is zero.
-    scale: f64,
+    /// Takes the place of the limit's size in the margin where the limit is zero; without it there is no margin then.
+    scale: Option<f64>,
     basis: String,
     /// What would mend a miss.
     fix: String,
     /// Why it could not be assessed, where it could not.
     missing: String,
+    /// Whether the value is that of a path that ends early: it can show a miss, but not that the limit is met.
+    partial: bool,
 }
 
 impl Comparison {
     fn judge(self) -> Check {
         let (state, margin) = match (self.value, self.limit) {
             (Some(value), Some(limit)) => {
-                let margin = Check::margin_of(value, limit, self.sense, self.scale);
+                let distance = Check::margin_of(value, limit, self.sense, self.scale.unwrap_or(1.0));
+                let margin = (limit.abs() > 0.0 || self.scale.is_some()).then_some(distance);
                 // Written so that a value that is not a number misses.
-                (if margin >= 0.0 { CheckState::Met } else { CheckState::Missed }, Some(margin))
+                let state = match distance >= 0.0 {
+                    true if self.partial => CheckState::NotAssessed,
+                    true => CheckState::Met,
+                    false => CheckState::Missed,
+                };
+                (state, margin)
             }
             _ => (CheckState::NotAssessed, None),
         };
+        // Nothing is said about a limit that the rest of the path may still break.
+        let value = self.value.filter(|_| state != CheckState::NotAssessed);
+        let margin = margin.filter(|_| state != CheckState::NotAssessed);
         let advice = match state {
             CheckState::Met => None,
             CheckState::Missed => Some(self.fix),
@@ -68,7 +79,7 @@ impl Comparison {
             title: self.title,
             required: true,
             state,
-            value: self.value,
+            value,
             limit: self.limit,
             sense: self.sense,
             dimension: self.dimension,
@@ -79,6 +90,9 @@ impl Comparison {
         }
     }
 }
+
+/// Thinner than this part of itself, a beam is another design: such advice helps nobody.
+const PLAUSIBLE: f64 = 0.4;
 
 fn percent() -> Unit {
     Unit::parse("%").unwrap_or_else(|_| Unit::si(Dimension::Ratio))
@@ -102,10 +116,18 @@ fn shown_below(x_m: f64, unit: &Unit) -> String {
     format!("{} {}", format_number(rounded_down(unit.from_si(x_m), 4), 4), unit.pretty())
 }
 
-/// Why a check over the whole travel has no value.
-const UNREACHED: &str = "the path ends before the full travel; see the status";
-
 impl Context<'_> {
+    /// Why a check over the whole travel has no value, or no final one.
+    fn unreached(&self) -> String {
+        let reach = self.behaviour.path.points.last().map_or(0.0, |p| p.displacement);
+        format!("the path ends at Δ = {}, before the full travel; see the status", format_si(reach, &self.design.units.displacement, 4))
+    }
+
+    /// Said behind a value of a path that ends early.
+    fn so_far(&self) -> &'static str {
+        if self.behaviour.whole { "" } else { ", on the computed part" }
+    }
+
     /// COMP001: the band needed over the best window of the required stroke.
     fn force(&self) -> Option<Check> {
         let (band, nominal) = self.requirements.force?;
@@ -121,7 +143,7 @@ impl Context<'_> {
             .and_then(|((_, deviation), level)| self.depth_advice(level, band, deviation))
             .unwrap_or_else(|| "ask for a shorter `travel` or a wider `band`, or change the shape".to_owned());
         let missing =
-            if self.behaviour.whole { format!("the required stroke of {stroke} is longer than the travel") } else { UNREACHED.to_owned() };
+            if self.behaviour.whole { format!("the force is not positive over any stroke of {stroke}") } else { self.unreached() };
         let comparison = Comparison {
             code: "COMP001",
             name: "force".to_owned(),
@@ -131,10 +153,11 @@ impl Context<'_> {
             sense: Sense::AtMost,
             dimension: Dimension::Ratio,
             display: percent(),
-            scale: 1.0,
+            scale: None,
             basis: "largest |F/level − 1| over the stroke, at the place of the travel where it is smallest".to_owned(),
             fix,
             missing,
+            partial: false,
         };
         Some(comparison.judge())
     }
@@ -150,12 +173,16 @@ impl Context<'_> {
         let (middle, free) = (f64::midpoint(hi, lo), (hi - lo) / (hi + lo));
         let rest =
             if free > band { "; that alone is not enough: a wider `band`, a shorter `travel` or another shape is needed too" } else { "" };
+        let factor = level / middle;
+        if !(0.2..=5.0).contains(&factor) {
+            return None;
+        }
         Some(format!(
             "the best stroke needs ±{} %; the flattest one has its own level of {} with ±{} %. Force is proportional to `design.depth`: multiply it by {}{rest}",
             format_number(100.0 * deviation, 3),
             format_si(middle, &self.design.units.force, 4),
             format_number(100.0 * free, 3),
-            format_number(level / middle, 5),
+            format_number(factor, 5),
         ))
     }
 
@@ -175,18 +202,15 @@ impl Context<'_> {
             sense: Sense::AtLeast,
             dimension: Dimension::Length,
             display: self.design.units.displacement.clone(),
-            scale: wanted,
+            scale: None,
             basis: "longest displacement interval on which the force stays inside the band".to_owned(),
             fix: format!(
-                "the band holds over {}; a wider `band`, a longer `load.travel` or another shape is needed for {}",
+                "the band holds over {} of {}; COMP001 says what would move the force into the band",
                 show(usable.unwrap_or(0.0)),
                 show(wanted)
             ),
-            missing: if self.requirements.force.is_none() {
-                "`requirements.force.band` is not given".to_owned()
-            } else {
-                UNREACHED.to_owned()
-            },
+            missing: self.unreached(),
+            partial: false,
         };
         Some(comparison.judge())
     }
@@ -198,9 +222,11 @@ impl Context<'_> {
         let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
         let place = found.map_or_else(String::new, |s| {
             let beam = self.design.beam_names.get(s.beam).map_or("?", String::as_str);
-            format!(" (beam {beam}, u = {}, Δ = {})", format_number(s.peak.u, 3), show(s.at_m))
+            format!(" (beam {beam}, u = {}, Δ = {}{})", format_number(s.peak.u, 3), show(s.at_m), self.so_far())
         });
-        let until = self.measured.get("travel_at_allowable_stress").map_or_else(String::new, |x| {
+        // A travel below the stroke asked for is no way out.
+        let useful = |x: &f64| self.requirements.travel_m.is_none_or(|t| *x >= t);
+        let until = self.measured.get("travel_at_allowable_stress").filter(useful).map_or_else(String::new, |x| {
             format!("keep `load.travel` at or below {}, or ", shown_below(x, &self.design.units.displacement))
         });
         let ratio = found.zip(self.design.allowable_pa()).map_or(1.0, |(s, allowed)| s.peak.stress_pa / allowed);
@@ -208,6 +234,7 @@ impl Context<'_> {
         let spare = if self.design.theory == Theory::Reissner { 0.98 } else { 1.0 };
         let thinner = rounded_down(spare / ratio, 3);
         let basis = match wanted {
+            StressLimit::Yield => "yield stress, since no `stress` requirement is given".to_owned(),
             StressLimit::SafetyFactor(factor) => {
                 format!("yield stress over {}; Lan, Wang & Chen 2010, eq. (5) and constraint (iv)", format_number(factor, 4))
             }
@@ -222,18 +249,26 @@ impl Context<'_> {
             sense: Sense::AtMost,
             dimension: Dimension::Stress,
             display: self.design.units.stress.clone(),
-            scale: 1.0,
+            scale: None,
             basis,
-            fix: format!(
-                "{until}make all beams thinner: stress follows the thickness (× {}), and `design.depth` × {} keeps the force",
-                format_number(thinner, 3),
-                format_number(1.0 / (thinner * thinner * thinner), 4)
-            ),
+            fix: if thinner >= PLAUSIBLE {
+                format!(
+                    "{until}make all beams thinner: stress follows the thickness (× {}), and `design.depth` × {} keeps the force",
+                    format_number(thinner, 3),
+                    format_number(1.0 / (thinner * thinner * thinner), 4)
+                )
+            } else {
+                format!(
+                    "{until}change the shape, shorten the travel or choose another material: the stress is {} times what is allowed",
+                    format_number(ratio, 3)
+                )
+            },
             missing: if self.design.yield_pa.is_none() {
                 "the yield stress is not known; give `material.yield_stress`".to_owned()
             } else {
-                UNREACHED.to_owned()
+                self.unreached()
             },
+            partial: !self.behaviour.whole,
         };
         Some(comparison.judge())
     }
@@ -251,17 +286,18 @@ impl Context<'_> {
             sense,
             dimension: Dimension::Stiffness,
             display: self.design.units.stiffness.clone(),
-            scale,
+            scale: Some(scale),
             basis: "dF/dΔ from the tangent of the equilibrium equations; where the limit is zero, the margin is relative to the initial stiffness".to_owned(),
             fix,
-            missing: UNREACHED.to_owned(),
+            missing: self.unreached(),
+            partial: !self.behaviour.whole,
         }
         };
         let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
-        let at = self.measured.stiffness.map_or_else(String::new, |(_, x)| format!(" (Δ = {})", show(x)));
+        let at = self.measured.stiffness.map_or_else(String::new, |(_, x)| format!(" (Δ = {}{})", show(x), self.so_far()));
         let jump = match self.behaviour.jump() {
             Some((from, Some(to))) => format!("a force-driven device jumps from Δ = {} to {}; ", show(from), show(to)),
-            Some((from, None)) => format!("a force-driven device jumps at Δ = {} beyond the travel; ", show(from)),
+            Some((from, None)) => format!("a force-driven device jumps from Δ = {} to a place beyond the travel; ", show(from)),
             None => String::new(),
         };
         let least = self.measured.stiffness.map(|(k, _)| k);
@@ -278,7 +314,7 @@ impl Context<'_> {
             .judge(),
         ];
         if let Some(limit) = self.requirements.stiffness_max {
-            let largest = self.behaviour.largest_stiffness().filter(|_| self.behaviour.whole);
+            let largest = self.behaviour.largest_stiffness();
             all.push(
                 slope(
                     "COMP005",
@@ -312,7 +348,7 @@ impl Context<'_> {
                     sense,
                     dimension: info.dimension,
                     display: display_unit(self.design, *index),
-                    scale: 1.0,
+                    scale: None,
                     basis: info.doc.to_owned(),
                     fix: "change the design, or relax the limit".to_owned(),
                     missing: if matches!(info.name, "clearance_min" | "envelope_margin") {
@@ -320,6 +356,7 @@ impl Context<'_> {
                     } else {
                         "the design has no such value; see the status and the meaning of the metric".to_owned()
                     },
+                    partial: false,
                 };
                 all.push(comparison.judge());
             }

@@ -2,7 +2,7 @@
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::text::closest;
-use forcewright_base::units::{Dimension, Quantity, Unit};
+use forcewright_base::units::{Dimension, Quantity, Unit, format_si};
 use forcewright_beam::{Beam, Drive, Joint, Network, NetworkError, Node, Rotation, Section, Shape, Support, Theory};
 use forcewright_contract::describe::{Located, Member, Origin, Slot};
 use forcewright_elements::materials::{self, Property};
@@ -41,8 +41,12 @@ pub struct Design {
     pub requirements: Option<Requirements>,
     /// Units in which people are shown results.
     pub units: DisplayUnits,
-    /// Keys of works that the material data come from, in words.
+    /// Where the material data come from, in words.
     pub material_origin: String,
+    /// Keys of the works that catalogue values were taken from.
+    pub material_sources: Vec<&'static str>,
+    /// What the catalogue says about the material.
+    pub material_note: Option<&'static str>,
 }
 
 impl Design {
@@ -91,6 +95,8 @@ pub struct Requirements {
 /// What the stress is held against.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StressLimit {
+    /// The yield stress itself: what holds when nothing is asked for.
+    Yield,
     /// Yield stress over this factor.
     SafetyFactor(f64),
     /// A stress, Pa.
@@ -101,6 +107,7 @@ impl Design {
     /// The largest stress allowed, Pa, if one is asked for and the yield stress is known where it is needed.
     pub fn allowable_pa(&self) -> Option<f64> {
         match self.requirements.as_ref()?.stress? {
+            StressLimit::Yield => self.yield_pa,
             StressLimit::Stress(stress_pa) => Some(stress_pa),
             StressLimit::SafetyFactor(factor) => Some(self.yield_pa? / factor),
         }
@@ -158,6 +165,9 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     }
     check_network(&network, spec, place, diagnostics);
     check_held(&network, spec, diagnostics);
+    if let Some(mirror) = mirror {
+        check_mirror(&network, mirror, spec, diagnostics);
+    }
     if diagnostics.has_errors() {
         return None;
     }
@@ -179,7 +189,32 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         requirements,
         units,
         material_origin,
+        material_sources: material_sources(&spec.material),
+        material_note: catalogue_entry(&spec.material).and_then(|m| m.note.as_deref()),
     })
+}
+
+fn catalogue_entry(material: &spec::Material) -> Option<&'static materials::Material> {
+    materials::find(&material.catalogue.as_ref()?.value)
+}
+
+/// Sources of the values that the catalogue filled in, each once.
+fn material_sources(material: &spec::Material) -> Vec<&'static str> {
+    let Some(entry) = catalogue_entry(material) else { return Vec::new() };
+    let taken = [
+        (&material.young_modulus, &entry.young_modulus_pa),
+        (&material.poisson_ratio, &entry.poisson_ratio),
+        (&material.yield_stress, &entry.yield_stress_pa),
+        (&material.density, &entry.density_kg_per_m3),
+    ];
+    let from_catalogue = |slot: &Slot<Quantity>| matches!(slot, Some(Located { origin: Origin::Catalogue(_), .. }));
+    let mut keys: Vec<&'static str> = Vec::new();
+    for key in taken.into_iter().filter(|(slot, _)| from_catalogue(slot)).filter_map(|(_, p)| p.as_ref()).flat_map(Property::source_keys) {
+        if !keys.contains(&key) {
+            keys.push(key);
+        }
+    }
+    keys
 }
 
 fn theory_of(spec: &Spec) -> Theory {
@@ -237,7 +272,21 @@ fn fill_material(material: &mut spec::Material, diagnostics: &mut Diagnostics) -
         fill(&mut material.poisson_ratio, found.poisson_ratio.as_ref(), "");
         fill(&mut material.yield_stress, found.yield_stress_pa.as_ref(), "MPa");
         fill(&mut material.density, found.density_kg_per_m3.as_ref(), "kg/m^3");
-        origin = format!("catalogue entry {}, overridden by the project file where it gives values", found.name);
+        let mut overridden = Vec::new();
+        for (what, slot, property, symbol) in [
+            ("young_modulus", &material.young_modulus, &found.young_modulus_pa, "GPa"),
+            ("poisson_ratio", &material.poisson_ratio, &found.poisson_ratio, "1"),
+            ("yield_stress", &material.yield_stress, &found.yield_stress_pa, "MPa"),
+            ("density", &material.density, &found.density_kg_per_m3, "kg/m^3"),
+        ] {
+            if let (Some(Located { origin: Origin::File, value, .. }), Some(property), Ok(unit)) = (slot, property, Unit::parse(symbol)) {
+                overridden.push(format!("{what} = {value} instead of {}", format_si(property.value, &unit, 4)));
+            }
+        }
+        origin = format!("catalogue entry {}", found.name);
+        if !overridden.is_empty() {
+            origin = format!("{origin}; the project file overrides {}", overridden.join(", "));
+        }
     }
     origin
 }
@@ -257,37 +306,42 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
         }
         (Some(factor), None) => Some(StressLimit::SafetyFactor(factor.value.si)),
         (None, Some(max)) => Some(StressLimit::Stress(max.value.si)),
-        (None, None) => None,
+        // A part that yields does not do what its curve says, asked for or not.
+        (None, None) => spec.material.yield_stress.as_ref().map(|_| StressLimit::Yield),
     };
-    if let Some(section) = requirements.stress.present.as_ref().filter(|_| stress.is_none() && requirements.stress.max.is_none()) {
+    // A value that was given but not understood has been reported: the table does not say nothing.
+    let sound = !diagnostics.has_errors();
+    if let (Some(section), None, None) = (&requirements.stress.present, &requirements.stress.safety_factor, &requirements.stress.max)
+        && sound
+    {
         diagnostics.push(
             Diagnostic::error("E0302", section.span, "`stress` says nothing")
                 .label("from this table")
                 .help("give `safety_factor = 1.5` or `max = \"50 MPa\"`"),
         );
     }
-    if let (Some(travel), None) = (&requirements.travel, &requirements.force.band) {
-        // A missing band inside `[requirements.force]` has been reported by the reader.
-        if requirements.force.present.is_none() {
-            diagnostics.push(
-                Diagnostic::error("E0302", travel.span, "`travel` needs a force band")
-                    .label("a stroke inside which band?")
-                    .help("add `force = { band = \"5 %\" }`, with `nominal = \"…\"` where the level matters"),
-            );
-        }
-    }
+    check_stroke(spec, sound, diagnostics);
     let mut limits = Vec::new();
     for (index, bounds) in requirements.limits.bounds.iter().enumerate() {
         if let Some(section) = &bounds.present {
             let (min, max) = (quantity(bounds.min.as_ref()), quantity(bounds.max.as_ref()));
             let Some(unit) = min.or(max).map(|q| q.unit.clone()) else {
-                diagnostics.push(
-                    Diagnostic::error("E0302", section.span, "this limit says nothing")
-                        .label("from this table")
-                        .help("give `min` or `max`"),
-                );
+                if sound {
+                    diagnostics.push(
+                        Diagnostic::error("E0302", section.span, "this limit says nothing")
+                            .label("from this table")
+                            .help("give `min` or `max`"),
+                    );
+                }
                 continue;
             };
+            if METRICS.get(index).is_some_and(|m| NOT_COMPUTED.contains(&m.name)) {
+                diagnostics.push(
+                    Diagnostic::warning("W0507", section.span, "this version does not compute this metric")
+                        .label("will be not assessed")
+                        .help("a requirement that is not assessed does not count as met; remove the limit for now"),
+                );
+            }
             limits.push((index, min.map(|q| q.si), max.map(|q| q.si), unit));
         }
     }
@@ -301,6 +355,41 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
         limits,
     })
 }
+
+/// A force band holds over a stroke, and the stroke lies inside the travel.
+fn check_stroke(spec: &Spec, sound: bool, diagnostics: &mut Diagnostics) {
+    let requirements = &spec.requirements;
+    match (&requirements.force.present, &requirements.travel) {
+        (Some(force), None) if sound => diagnostics.push(
+            Diagnostic::error("E0302", force.span, "`force` needs `travel`: the stroke over which the band must hold")
+                .label("over which stroke?")
+                .help("add, for example, `travel = \"6 mm\"` to `[requirements]`"),
+        ),
+        (None, Some(travel)) => diagnostics.push(
+            Diagnostic::error("E0302", travel.span, "`travel` needs a force band")
+                .label("a stroke inside which band?")
+                .help("add `force = { band = \"5 %\" }`, with `nominal = \"…\"` where the level matters"),
+        ),
+        _ => {}
+    }
+    if let (Some(stroke), Some(travel)) = (&requirements.travel, &spec.load.travel)
+        && stroke.value.si > travel.value.si
+    {
+        diagnostics.push(
+            Diagnostic::error(
+                "E0204",
+                stroke.span,
+                format!("the stroke of {} is longer than the travel of {}", stroke.value, travel.value),
+            )
+            .label("longer than the travel")
+            .related(travel.span, "the travel")
+            .help("ask for a shorter stroke, or lengthen `load.travel`"),
+        );
+    }
+}
+
+/// Names of the language that this version cannot fill.
+const NOT_COMPUTED: [&str; 2] = ["clearance_min", "envelope_margin"];
 
 struct Builder<'a> {
     spec: &'a Spec,
@@ -414,6 +503,13 @@ impl Builder<'_> {
                 None
             }
             [_] => {
+                if let (Some(length), None) = (&beam.length, &beam.angle) {
+                    self.error(
+                        Diagnostic::error("E0305", length.span, "`length` is given, but follows from the nodes and the shape")
+                            .label("follows by itself")
+                            .help("remove it, or give the whole shape by `angle` with `length`"),
+                    );
+                }
                 if let Some(bend) = &beam.bend {
                     return Some(ShapeForm::Bend(bend.value.clone()));
                 }
@@ -673,6 +769,56 @@ fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut 
         }
     };
     diagnostics.push(diagnostic);
+}
+
+/// On the mirror line, symmetry holds a node's rotation and its motion across; the network must say so, or one half alone would move
+/// otherwise than the two together. A beam on the line would be counted twice.
+fn check_mirror(network: &Network, mirror: Mirror, spec: &Spec, diagnostics: &mut Diagnostics) {
+    let size = network.beams.iter().map(|b| b.shape.length_m()).fold(0.0, f64::max);
+    let off = |[x, y]: [f64; 2]| match mirror {
+        Mirror::X(at) => (x - at).abs() > 1e-9 * size,
+        Mirror::Y(at) => (y - at).abs() > 1e-9 * size,
+    };
+    for (node, drawn) in network.nodes.iter().zip(&spec.design.nodes) {
+        let guided = match node.support {
+            Support::Clamped => true,
+            Support::Slider { direction, rotation: Rotation::Fixed } => match mirror {
+                Mirror::X(_) => direction[0].abs() < 1e-9,
+                Mirror::Y(_) => direction[1].abs() < 1e-9,
+            },
+            _ => false,
+        };
+        if !off(node.position_m) && !guided {
+            let along = if matches!(mirror, Mirror::X(_)) { "[0, 1]" } else { "[1, 0]" };
+            diagnostics.push(
+                Diagnostic::error(
+                    "E0511",
+                    drawn.name.span,
+                    format!("node `{}` lies on the mirror line, but could leave it or turn", drawn.name.value),
+                )
+                .label("on the mirror line")
+                .help(format!("write what symmetry does: `support = \"slider\", direction = {along}`, or clamp it")),
+            );
+        }
+    }
+    for (beam, drawn) in network.beams.iter().zip(&spec.design.beams) {
+        let start = network.nodes[beam.start].position_m;
+        let on_line = (0..=4).all(|i| {
+            let [x, y] = beam.shape.point_m(f64::from(i) / 4.0);
+            !off([start[0] + x, start[1] + y])
+        });
+        if on_line {
+            diagnostics.push(
+                Diagnostic::error(
+                    "E0511",
+                    drawn.name.span,
+                    format!("beam `{}` lies on the mirror line and would be counted twice", drawn.name.value),
+                )
+                .label("on the mirror line")
+                .help("draw the whole mechanism without `layout.mirror`"),
+            );
+        }
+    }
 }
 
 /// Something besides the moved node must hold the mechanism, or it follows the load as a whole.

@@ -59,6 +59,11 @@ pub(crate) const CODES: &[Explanation] = &[
     code("E0507", "not a mirror line", "Mirror lines are parallel to an axis: `x = 0`, `y = 2 mm`."),
     code("E0508", "the load leaves the mirror line", "The two halves move alike only if the load moves along the mirror line."),
     code("E0509", "the network cannot be solved as described", "The engine refuses a value or a combination; the message says which."),
+    code(
+        "E0511",
+        "something on the mirror line",
+        "A node on the mirror line can neither leave it nor turn, because the mirrored half pulls the other way. The half that is solved must be held accordingly: a slider along the line with fixed rotation, or clamped. A beam on the line would be counted twice.",
+    ),
     code("E0510", "a loose node", "No beam ends at this node."),
     code(
         "W0501",
@@ -89,5 +94,15 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0506",
         "the computed state is unstable",
         "With the displacement of the load held, the network could still lower its energy by moving sideways: at the named displacement the path bifurcates, as a straight column does at its buckling load. The computed curve is an equilibrium, but a real part, which is never perfectly symmetric, leaves it. Give the design a small imperfection (a bend, a shifted node) to follow the branch that the part takes.",
+    ),
+    code(
+        "W0507",
+        "a limit cannot be assessed",
+        "The metric is part of the language, but this version does not compute it. The requirement will be *not assessed*, which does not count as met (exit code 1).",
+    ),
+    code(
+        "W0508",
+        "beams cross",
+        "The axes of two beams, of a beam with itself, or of a beam with the mirror line (and so with the other half) intersect. In a plane part that is contact, which is not modelled: the curve holds only up to the named displacement. Only axes are tested; beams of finite thickness touch a little earlier.",
     ),
 ];

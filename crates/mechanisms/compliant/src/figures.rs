@@ -28,6 +28,24 @@ fn stress_axis(design: &Design) -> Axis {
     Axis { name: "stress", label: "Largest stress |σ|".to_owned(), dimension: Dimension::Stress, display: design.units.stress.clone() }
 }
 
+/// For each beam +1 if its end is nearer to the moved node than its start, along beams, else −1.
+fn senses(design: &Design) -> Vec<f64> {
+    let network = &design.network;
+    let mut distance = vec![usize::MAX; network.nodes.len()];
+    distance[design.load_node] = 0;
+    // Each round reaches the nodes one beam further away.
+    for round in 0..network.nodes.len() {
+        for beam in &network.beams {
+            for (from, to) in [(beam.start, beam.end), (beam.end, beam.start)] {
+                if distance[from] == round && distance[to] == usize::MAX {
+                    distance[to] = round + 1;
+                }
+            }
+        }
+    }
+    network.beams.iter().map(|b| if distance[b.end] <= distance[b.start] { 1.0 } else { -1.0 }).collect()
+}
+
 /// Force that a beam passes on from its end to its start, in the sense of the load, whole layout, N.
 fn beam_force_n(behaviour: &Behaviour, direction: [f64; 2], point: usize, beam: usize) -> f64 {
     let [h, v] = behaviour.path.points[point].beams[beam].force_n;
@@ -128,7 +146,9 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
             format_si(x, length, 4)
         );
     }
-    caption.push_str("c and d are the limits of the operational range as Lan, Wang & Chen define it.");
+    if !markers.is_empty() {
+        caption.push_str("c and d are the limits of the operational range as Lan, Wang & Chen define it.");
+    }
     let series = Series {
         label: if design.mirror.is_some() { "F, both halves".to_owned() } else { "F".to_owned() },
         x: points.iter().map(|p| p.displacement).collect(),
@@ -205,9 +225,10 @@ fn stress_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) ->
 fn beam_forces_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     let strokes = [Stroke::Main, Stroke::Second, Stroke::Third, Stroke::Reference];
     let x: Vec<f64> = behaviour.path.points.iter().map(|p| p.displacement).collect();
+    let senses = senses(design);
     // More lines than line styles would be unreadable: the beams with the largest forces are shown.
     let mut beams: Vec<(usize, Vec<f64>)> = (0..design.network.beams.len())
-        .map(|b| (b, (0..x.len()).map(|p| beam_force_n(behaviour, design.direction, p, b)).collect()))
+        .map(|b| (b, (0..x.len()).map(|p| senses[b] * beam_force_n(behaviour, design.direction, p, b)).collect()))
         .collect();
     let largest = |y: &[f64]| y.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
     beams.sort_by(|a, b| largest(&b.1).total_cmp(&largest(&a.1)).then(a.0.cmp(&b.0)));
@@ -237,7 +258,7 @@ fn beam_forces_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     Figure {
         id: "beam-forces",
         title: "Force carried by each beam".to_owned(),
-        caption: "What each beam passes on from its end to its start along the load, whole layout; positive in the sense of the load. Beams that take turns in rising and falling make the sum constant.".to_owned(),
+        caption: "What each beam passes on from the load towards the ground, along the load, whole layout. Beams that take turns in rising and falling make the sum constant.".to_owned(),
         content: FigureContent::Plot(plot),
     }
 }

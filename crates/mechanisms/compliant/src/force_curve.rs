@@ -249,7 +249,7 @@ impl ForceCurve {
             match nominal {
                 Some(level) => (hi / level - 1.0).abs().max((lo / level - 1.0).abs()),
                 // Half width β of the narrowest band with a free level: (max − min)/(max + min).
-                None if lo > 0.0 => (hi - lo) / (hi + lo),
+                None if hi + lo > 0.0 => (hi - lo) / (hi + lo),
                 None => f64::INFINITY,
             }
         };

@@ -5,6 +5,7 @@
 
 mod analysis;
 mod checks;
+mod crossing;
 mod design;
 mod explain;
 mod figures;
@@ -20,6 +21,7 @@ use forcewright_contract::family::{Analysis, Mechanism, Progress, Reproduction};
 use forcewright_model::{Counter, Outcome, Status, StatusKind};
 
 pub use analysis::{Behaviour, LargestStress, Measured, measure};
+pub use crossing::{Crossing, first_crossing};
 pub use design::{Design, DisplayUnits, Mirror, Requirements, StressLimit};
 pub use force_curve::{Extrema, ForceCurve, Interval};
 pub use metrics::{METRICS, MetricInfo};

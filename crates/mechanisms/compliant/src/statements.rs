@@ -1,10 +1,11 @@
 //! What a report says in words: model, limits, sources, warnings.
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
-use forcewright_beam::Theory;
+use forcewright_beam::{Beam, Theory};
 use forcewright_model::{Citation, Statement, Warning};
 
 use crate::analysis::{Behaviour, Measured};
+use crate::crossing::first_crossing;
 use crate::design::Design;
 
 /// Length over thickness below which beam theory is doubtful.
@@ -44,7 +45,10 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
             "Stress",
             "Bending and, in the geometrically exact model, axial stress, on both faces, over the whole length; the largest over the travel.",
         ),
-        statement("Material data", design.material_origin.clone()),
+        statement(
+            "Material data",
+            format!("{}.{}", design.material_origin, design.material_note.map_or_else(String::new, |n| format!(" {}", n.trim()))),
+        ),
     ]
 }
 
@@ -59,7 +63,11 @@ pub(crate) fn limits() -> Vec<Statement> {
             "Material",
             "Linear elastic. No plasticity, creep, relaxation, temperature or fatigue; plastics lose force under lasting load.",
         ),
-        statement("Contact", "Beams pass through each other and through themselves; look at the picture."),
+        statement("Tolerances", "Half widths after ± are recorded and shown; they do not enter this analysis."),
+        statement(
+            "Contact",
+            "Beams pass through each other and through themselves. Crossings of their axes are found and named (W0508); their thickness, blocks and clamps are not looked at.",
+        ),
         statement("Plane", "Motion in the plane only: no buckling or tilting out of it, no weight, no dynamics."),
         statement(
             "Slenderness",
@@ -83,7 +91,49 @@ pub(crate) fn sources(design: &Design) -> Vec<Citation> {
             used_for: "stretching and shear of beams under large rotation",
         });
     }
+    for key in &design.material_sources {
+        all.push(Citation { key, text: "Source of material data; see REFERENCES.bib.", used_for: "values of the material catalogue" });
+    }
     all
+}
+
+/// Thickness over radius of a beam as made, at a place.
+fn curvature_ratio(beam: &Beam, u: f64) -> f64 {
+    beam.section.thickness_m * beam.shape.slope_at(u).abs() / beam.shape.length_m()
+}
+
+/// One warning about all strongly curved beams, with what it means for the largest stress.
+///
+/// In a curved bar of rectangular section the stress at the inner face exceeds that of a straight one by the factor 1 + w/(3R), to first
+/// order in w/R (Winkler; Timoshenko, Strength of Materials, Part II).
+fn curved_beams(design: &Design, measured: &Measured) -> Option<Warning> {
+    let name = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
+    let steepest = |b: &Beam| (0..=64).map(|i| curvature_ratio(b, f64::from(i) / 64.0)).fold(0.0, f64::max);
+    let ratios: Vec<(usize, f64)> = design.network.beams.iter().map(steepest).enumerate().filter(|(_, r)| *r > CURVED).collect();
+    let largest = ratios.iter().fold(0.0_f64, |m, (_, r)| m.max(*r));
+    let beams = ratios.iter().map(|(i, _)| format!("`{}`", name(*i))).collect::<Vec<_>>().join(", ");
+    let at_peak = measured.stress.and_then(|s| {
+        let factor = 1.0 + curvature_ratio(design.network.beams.get(s.beam)?, s.peak.u) / 3.0;
+        let corrected = factor * s.peak.stress_pa;
+        let verdict = match design.allowable_pa() {
+            Some(allowed) if s.peak.stress_pa <= allowed && corrected > allowed => ", which is more than allowed",
+            Some(allowed) if corrected <= allowed => ", still allowed",
+            _ => "",
+        };
+        Some(format!(
+            "; at the place of the largest stress (beam `{}`, u = {}) it is about {} % higher, {}{verdict}",
+            name(s.beam),
+            format_number(s.peak.u, 3),
+            format_number(100.0 * (factor - 1.0), 2),
+            format_si(corrected, &design.units.stress, 4)
+        ))
+    });
+    let message = format!(
+        "strongly curved: {beams} (thickness over radius up to {}); the stress at the inner face of a curved beam is higher than computed{}",
+        format_number(largest, 2),
+        at_peak.unwrap_or_default()
+    );
+    (!ratios.is_empty()).then_some(Warning { code: "W0502", message })
 }
 
 /// Things to know about this result.
@@ -102,29 +152,15 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
                 ),
             });
         }
-        let steepest = (0..=64).map(|i| beam.shape.slope_at(f64::from(i) / 64.0).abs()).fold(0.0, f64::max);
-        let curved = beam.section.thickness_m * steepest / beam.shape.length_m();
-        if curved > CURVED {
-            all.push(Warning {
-                code: "W0502",
-                message: format!(
-                    "beam `{}` is strongly curved (thickness over radius {}): the stress at its inner face is about {} % higher than computed",
-                    name(index),
-                    format_number(curved, 2),
-                    format_number(100.0 * curved / 3.0, 2)
-                ),
-            });
-        }
     }
+    all.extend(curved_beams(design, measured));
     let show = |x: f64| format_si(x, &design.units.displacement, 4);
     if let Some((from, to)) = behaviour.jump() {
-        let target = to.map_or_else(|| "beyond the travel".to_owned(), |x| format!("to {}", show(x)));
+        let stays = if behaviour.whole { "; driven by displacement it does not" } else { "" };
+        let target = to.map_or_else(|| "to a place beyond the travel".to_owned(), |x| format!("to {}", show(x)));
         all.push(Warning {
             code: "W0503",
-            message: format!(
-                "under a growing dead force the mechanism would jump from Δ = {} {target}; driven by displacement it does not",
-                show(from)
-            ),
+            message: format!("loaded by a growing force (a weight) the mechanism would jump from Δ = {} {target}{stays}", show(from)),
         });
     }
     if let (Some(stress), Some(yield_pa)) = (measured.stress, design.yield_pa)
@@ -134,17 +170,33 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
         all.push(Warning {
             code: "W0504",
             message: format!(
-                "the stress exceeds the yield stress of {}: beyond that the curve is not that of the real part",
-                format_si(yield_pa, &unit, 4)
+                "the stress in beam `{}` exceeds the yield stress of {}{}: beyond that the curve is not that of the real part",
+                name(stress.beam),
+                format_si(yield_pa, &unit, 4),
+                behaviour.travel_at_stress(yield_pa).map_or_else(String::new, |x| format!(" from Δ = {} on", show(x)))
             ),
         });
     }
-    if let Some(point) = behaviour.path.points.iter().find(|p| p.instability > 0) {
-        let from = behaviour.path.bifurcations.first().map_or(point.displacement, |b| b.displacement);
+    if let Some(crossing) = first_crossing(design, &behaviour.path) {
+        let other = match crossing.second {
+            None => "the mirror line, and so its own other half".to_owned(),
+            Some(second) if second == crossing.first => "itself".to_owned(),
+            Some(second) => format!("beam `{}`", name(second)),
+        };
+        all.push(Warning {
+            code: "W0508",
+            message: format!(
+                "beam `{}` crosses {other} from Δ = {} on; contact is not modelled, so the results hold only up to there",
+                name(crossing.first),
+                show(crossing.displacement_m)
+            ),
+        });
+    }
+    if let Some(from) = behaviour.unstable_from_m {
         all.push(Warning {
             code: "W0506",
             message: format!(
-                "from Δ = {} on the computed state is unstable even with the displacement held: a real part leaves it for another shape, and this curve no longer holds",
+                "from Δ = {} on the computed shape is unstable even with the displacement held: a real part leaves it, and the results hold only up to there",
                 show(from)
             ),
         });

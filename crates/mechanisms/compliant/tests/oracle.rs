@@ -355,6 +355,42 @@ travel = "0.1 mm"
     assert!(!found.is_empty(), "buckling at {shortening_m} m is inside the travel");
     // Stretching and shear move the load by about F/EA and F/kGA, a few per mille here.
     near(found[0].displacement, shortening_m, 1e-2, "displacement at buckling");
-    assert!(outcome(text, &[]).warnings.iter().any(|w| w.code == "W0506"));
-    assert!(!outcome(text, &["load.travel=0.05 mm"]).warnings.iter().any(|w| w.code == "W0506"));
+    let result = outcome(text, &[]);
+    assert_eq!(result.status.kind, StatusKind::UnstableBeyond);
+    assert!(result.warnings.iter().any(|w| w.code == "W0506"));
+    let before = outcome(text, &["load.travel=0.05 mm"]);
+    assert_eq!(before.status.kind, StatusKind::Complete);
+}
+
+/// A quarter ring, pushed: thickness over radius is exact, and so is what W0502 makes of it.
+#[test]
+fn a_strongly_curved_beam_is_named_with_its_ratio() {
+    let text = r#"
+schema = 1
+mechanism = "compliant"
+[material]
+young_modulus = "2 GPa"
+poisson_ratio = 0.3
+[design]
+thickness = "2 mm"
+depth = "10 mm"
+nodes.a = { at = ["0 mm", "0 mm"], support = "clamped" }
+nodes.b = { at = ["10 mm", "10 mm"] }
+[[design.beams]]
+name = "ring"
+between = ["a", "b"]
+arc = "90 deg"
+[load]
+node = "b"
+direction = [0, -1]
+travel = "0.5 mm"
+"#;
+    let warning = |set: &[&str], code: &str| outcome(text, set).warnings.into_iter().find(|w| w.code == code).map(|w| w.message);
+    // Radius 10 mm: w/R = 0.2, and 0.2/3 = 6.7 % more stress at the inner face.
+    let message = warning(&[], "W0502").expect("0.2 is strongly curved");
+    assert!(message.contains("up to 0.2)") && message.contains("6.7 % higher"), "{message}");
+    assert_eq!(warning(&["design.thickness=0.9 mm"], "W0502"), None);
+    // Length 15.7 mm over 2 mm is not slender.
+    assert!(warning(&[], "W0501").is_some_and(|m| m.contains("7.85 times")));
+    assert_eq!(warning(&["design.thickness=1.5 mm"], "W0501"), None);
 }

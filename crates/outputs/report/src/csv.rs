@@ -7,7 +7,8 @@
 //! - `curve, branch, displacement / mm, force / N, angle / deg, …` otherwise: one row per point of one curve, and cells of other
 //!   curves' columns are empty.
 //!
-//! Numbers are the shortest decimals that give the same double again; one that is not finite is an empty cell.
+//! Numbers are the shortest decimals that give the same double again; one that is not finite is an empty cell, and a
+//! zero has no sign.
 
 use forcewright_model::{Axis, Branch, Curve, Outcome};
 
@@ -106,6 +107,8 @@ fn header(axis: &Axis) -> String {
 }
 
 fn number(value: f64) -> String {
+    // Adding zero takes the sign from a negative zero.
+    let value = value + 0.0;
     let size = value.abs();
     if !value.is_finite() {
         String::new()

@@ -18,6 +18,48 @@ pub(crate) fn escape(text: &str) -> String {
     out
 }
 
+/// Text as markup, where what stands between two backticks is code; a backtick without a partner stays.
+pub(crate) fn prose(text: &str) -> String {
+    let text = escape(text);
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text.as_str();
+    while let Some((before, after)) = rest.split_once('`') {
+        out.push_str(before);
+        match after.split_once('`') {
+            Some((code, more)) if !code.is_empty() => {
+                out.push_str("<code>");
+                out.push_str(&with_breaks(code));
+                out.push_str("</code>");
+                rest = more;
+            }
+            _ => {
+                out.push('`');
+                rest = after;
+            }
+        }
+    }
+    out.push_str(rest);
+    out
+}
+
+/// A dotted path as markup that may break after its dots and underscores and nowhere else.
+pub(crate) fn path(text: &str) -> String {
+    with_breaks(&escape(text))
+}
+
+/// Markup without elements, with places to break after dots and underscores that join words; not after the points of numbers.
+fn with_breaks(markup: &str) -> String {
+    let mut out = String::with_capacity(markup.len());
+    let mut chars = markup.chars().peekable();
+    while let Some(c) = chars.next() {
+        out.push(c);
+        if matches!(c, '.' | '_') && chars.peek().is_some_and(|next| next.is_alphabetic()) {
+            out.push_str("<wbr />");
+        }
+    }
+    out
+}
+
 /// One text from all items, each written by the same function.
 pub(crate) fn each<T>(items: impl IntoIterator<Item = T>, write: impl Fn(T) -> String) -> String {
     let mut out = String::new();
@@ -29,7 +71,7 @@ pub(crate) fn each<T>(items: impl IntoIterator<Item = T>, write: impl Fn(T) -> S
 
 #[cfg(test)]
 mod tests {
-    use super::escape;
+    use super::{escape, path, prose};
 
     #[test]
     fn markup_becomes_text() {
@@ -37,5 +79,20 @@ mod tests {
             escape("<script>alert('a & \"b\"')</script>\u{0}"),
             "&lt;script&gt;alert(&#39;a &amp; &quot;b&quot;&#39;)&lt;/script&gt;"
         );
+    }
+
+    #[test]
+    fn paired_backticks_become_code() {
+        for (text, want) in [
+            ("bend `b2` more", "bend <code>b2</code> more"),
+            ("`design.safety_factor`", "<code>design.<wbr />safety_<wbr />factor</code>"),
+            ("`a<b>` and `-0.05 N`", "<code>a&lt;b&gt;</code> and <code>-0.05 N</code>"),
+            ("one ` alone", "one ` alone"),
+            ("`x` and ` alone", "<code>x</code> and ` alone"),
+            ("``", "``"),
+        ] {
+            assert_eq!(prose(text), want);
+        }
+        assert_eq!(path("design.nodes.n3.at"), "design.<wbr />nodes.<wbr />n3.<wbr />at");
     }
 }

@@ -7,9 +7,10 @@ use std::fmt::Write as _;
 use forcewright_base::units::{Unit, format_number, format_si};
 use forcewright_model::{Check, CheckState, Figure, FigureContent, Metric, Plot, Report, Sense, Series, Statement, StatusKind};
 
-use crate::escape::{each, escape};
+use crate::escape::{each, escape, path, prose};
 use crate::svg;
 use crate::table::{Column, Table};
+use crate::words::{over_unit, with_minus};
 
 /// The page's style; colours come from [`svg::declarations`].
 const STYLE: &str = include_str!("report.css");
@@ -68,7 +69,7 @@ fn header(report: &Report) -> String {
     if let Some(variant) = &report.variant {
         facts.push(("Variant", escape(variant)));
     }
-    facts.push(("Project file", format!("<code>{}</code>", escape(&report.input_name))));
+    facts.push(("Project file", format!("<code>{}</code>", path(&report.input_name))));
     facts.push(("Forcewright", escape(&report.version)));
     let facts = each(facts, |(name, value)| format!("<div><dt>{name}</dt><dd>{value}</dd></div>"));
     format!(
@@ -104,11 +105,11 @@ fn status(report: &Report) -> String {
     if status.kind == StatusKind::Complete {
         return String::new();
     }
-    let advice = status.advice.as_ref().map_or_else(String::new, |a| format!("<br /><span class=\"advice\">→ {}</span>", escape(a)));
+    let advice = status.advice.as_ref().map_or_else(String::new, |a| format!("<br /><span class=\"advice\">→ {}</span>", prose(a)));
     format!(
         "<p class=\"verdict open\" id=\"status\"><span class=\"mark\" aria-hidden=\"true\">!</span> <span><strong>Analysis: {}.</strong> {}{advice}</span></p>\n",
         status.kind.word(),
-        escape(&status.message)
+        prose(&status.message)
     )
 }
 
@@ -132,7 +133,7 @@ fn state(state: CheckState) -> String {
 /// A quantity for people, markup.
 fn value(si: f64, unit: &Unit) -> String {
     let shown = unit.from_si(si);
-    if shown.is_finite() { escape(&format_si(si, unit, DIGITS)) } else { without_number(shown) }
+    if shown.is_finite() { escape(&with_minus(&format_si(si, unit, DIGITS))) } else { without_number(shown) }
 }
 
 /// What stands in place of a number that is none: a dash where it does not exist.
@@ -142,7 +143,7 @@ fn without_number(si: f64) -> String {
     } else if si > 0.0 {
         "∞"
     } else {
-        "-∞"
+        "−∞"
     }
     .to_owned()
 }
@@ -151,11 +152,12 @@ fn optional(si: Option<f64>, unit: &Unit) -> String {
     si.map_or_else(|| "–".to_owned(), |si| value(si, unit))
 }
 
-/// A relative margin as a signed percentage with one decimal.
+/// A relative margin as a signed percentage with one decimal; beyond a thousand per cent only that it is beyond.
 fn margin(margin: Option<f64>) -> String {
     match margin {
-        Some(m) if m.is_finite() && m.abs() < 100.0 => format!("{:+.1} %", 100.0 * m),
-        Some(m) if m.is_finite() => format!("{}{} %", if m > 0.0 { "+" } else { "" }, format_number(100.0 * m, 3)),
+        Some(m) if m > 10.0 => "&gt; +1000 %".to_owned(),
+        Some(m) if m < -10.0 => "&lt; −1000 %".to_owned(),
+        Some(m) if !m.is_nan() => with_minus(&format!("{:+.1} %", 100.0 * m + 0.0)),
         _ => "–".to_owned(),
     }
 }
@@ -182,12 +184,12 @@ fn check_table(caption: &str, checks: &[&Check]) -> String {
     ];
     let mut table = Table::new("checks", caption, &columns);
     for check in checks {
-        let mut what = escape(&check.title);
+        let mut what = prose(&check.title);
         if !check.basis.is_empty() {
-            let _ = write!(what, "<span class=\"note\">{}</span>", escape(&check.basis));
+            let _ = write!(what, "<span class=\"note\">{}</span>", prose(&check.basis));
         }
         if let Some(advice) = &check.advice {
-            let _ = write!(what, "<span class=\"advice\">→ {}</span>", escape(advice));
+            let _ = write!(what, "<span class=\"advice\">→ {}</span>", prose(advice));
         }
         table.row(&[
             what,
@@ -214,7 +216,7 @@ fn own_checks(report: &Report) -> String {
 }
 
 fn warnings(report: &Report) -> String {
-    let items = each(&report.outcome.warnings, |w| format!("<li><code>{}</code> {}</li>\n", escape(w.code), escape(&w.message)));
+    let items = each(&report.outcome.warnings, |w| format!("<li><code>{}</code> {}</li>\n", escape(w.code), prose(&w.message)));
     if items.is_empty() {
         return String::new();
     }
@@ -227,16 +229,16 @@ fn figures(report: &Report) -> String {
 }
 
 fn figure(number: usize, figure: &Figure) -> String {
-    let data = match &figure.content {
-        FigureContent::Plot(plot) => data_table(number, plot),
-        FigureContent::Scene(_) => String::new(),
+    let (class, data) = match &figure.content {
+        FigureContent::Plot(plot) => ("plot", data_table(number, plot)),
+        FigureContent::Scene(_) => ("scene", String::new()),
     };
     format!(
-        "<figure id=\"figure-{}\">\n{}<figcaption><strong>Figure {number}. {}.</strong> {}</figcaption>\n{data}</figure>\n",
+        "<figure id=\"figure-{}\" class=\"{class}\">\n{}<figcaption><strong>Figure {number}. {}.</strong> {}</figcaption>\n{data}</figure>\n",
         escape(figure.id),
         svg::figure(figure),
         escape(figure.title.trim_end_matches('.')),
-        escape(&figure.caption)
+        prose(&figure.caption)
     )
 }
 
@@ -246,11 +248,7 @@ fn data_table(number: usize, plot: &Plot) -> String {
     if lines.is_empty() {
         return String::new();
     }
-    let head = |label: &str, unit: &Unit| match unit.pretty() {
-        unit if unit.is_empty() => label.to_owned(),
-        unit => format!("{label} in {unit}"),
-    };
-    let (x, y) = (head(&plot.x.label, &plot.x.display), head(&plot.y.label, &plot.y.display));
+    let (x, y) = (over_unit(&plot.x.label, &plot.x.display), over_unit(&plot.y.label, &plot.y.display));
     let columns = [("Line", Column::Text), (x.as_str(), Column::Number), (y.as_str(), Column::Number)];
     let mut table = Table::new("data", &format!("Points of figure {number}"), &columns);
     let rows = (DATA_ROWS / lines.len()).max(2);
@@ -269,7 +267,7 @@ fn data_table(number: usize, plot: &Plot) -> String {
 /// A number without its unit, for tables that name it above.
 fn number_in(si: f64, unit: &Unit) -> String {
     let shown = unit.from_si(si);
-    if shown.is_finite() { format_number(shown, DIGITS) } else { without_number(shown) }
+    if shown.is_finite() { with_minus(&format_number(shown, DIGITS)) } else { without_number(shown) }
 }
 
 fn metric_table(caption: &str, metrics: &[&Metric]) -> String {
@@ -279,7 +277,7 @@ fn metric_table(caption: &str, metrics: &[&Metric]) -> String {
     let columns = [("Meaning", Column::Text), ("Value", Column::Number), ("Name", Column::Code)];
     let mut table = Table::new("metrics", caption, &columns);
     for m in metrics {
-        table.row(&[escape(m.doc), value(m.value, &m.display), escape(m.name)]);
+        table.row(&[prose(m.doc), value(m.value, &m.display), path(m.name)]);
     }
     table.finish()
 }
@@ -297,18 +295,13 @@ fn parameters(report: &Report) -> String {
     let columns = [("Path", Column::Code), ("Value", Column::Number), ("Origin", Column::Text), ("Meaning", Column::Text)];
     let mut table = Table::new("parameters", "The design as typed, with tolerances, and where each value comes from", &columns);
     for p in &report.parameters {
-        table.row(&[breakable(&p.path), escape(&p.value), escape(&p.origin), escape(&p.doc)]);
+        table.row(&[path(&p.path), escape(&with_minus(&p.value)), prose(&p.origin), prose(&p.doc)]);
     }
     section("parameters", "Parameters", &table.finish())
 }
 
-/// A dotted path that may break after its dots.
-fn breakable(path: &str) -> String {
-    escape(path).replace('.', ".<wbr />")
-}
-
 fn statements(id: &str, title: &str, statements: &[Statement]) -> String {
-    let items = each(statements, |s| format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(&s.title), escape(&s.text)));
+    let items = each(statements, |s| format!("<div><dt>{}</dt><dd>{}</dd></div>\n", prose(&s.title), prose(&s.text)));
     if items.is_empty() {
         return String::new();
     }
@@ -325,22 +318,22 @@ fn sources(report: &Report) -> String {
         &[("Key", Column::Code), ("Work", Column::Text), ("Used for", Column::Text)],
     );
     for s in &report.outcome.sources {
-        table.row(&[escape(s.key), escape(s.text), escape(s.used_for)]);
+        table.row(&[escape(s.key), prose(s.text), prose(s.used_for)]);
     }
     section("sources", "Sources", &table.finish())
 }
 
 fn work(report: &Report) -> String {
     let outcome = &report.outcome;
-    let mut content = format!("<p>Analysis: <strong>{}</strong>. {}</p>\n", outcome.status.kind.word(), escape(&outcome.status.message));
+    let mut content = format!("<p>Analysis: <strong>{}</strong>. {}</p>\n", outcome.status.kind.word(), prose(&outcome.status.message));
     if let Some(error) = outcome.error_estimate {
-        let _ = writeln!(content, "<p>Estimated error of the forces: {} of the largest force.</p>", format_number(error, 2));
+        let _ = writeln!(content, "<p>Estimated error of the forces: {} of the largest force.</p>", with_minus(&format_number(error, 2)));
     }
     if !outcome.counters.is_empty() {
         let mut table =
             Table::new("counters", "Work done; the same on every machine", &[("Counter", Column::Code), ("Count", Column::Number)]);
         for c in &outcome.counters {
-            table.row(&[escape(c.name), c.count.to_string()]);
+            table.row(&[path(c.name), c.count.to_string()]);
         }
         content.push_str(&table.finish());
     }
@@ -355,7 +348,7 @@ fn provenance(report: &Report) -> String {
          <div><dt>SHA-256 of all read</dt><dd><code class=\"hash\">{}</code></dd></div>\n</dl>\n\
          <p>The same numbers again, on any machine:</p>\n<pre><code>{}</code></pre>\n",
         escape(&report.version),
-        escape(&report.input_name),
+        path(&report.input_name),
         escape(&report.input_sha256),
         escape(&report.command)
     );

@@ -27,8 +27,17 @@ pub fn document(outcome: &Outcome, input_sha256: &str, version: &str) -> Value {
     })
 }
 
+/// A number; a zero has no sign.
+fn number(value: f64) -> Value {
+    (value + 0.0).into()
+}
+
+fn numbers(values: &[f64]) -> Value {
+    values.iter().map(|v| number(*v)).collect()
+}
+
 fn quantity(value: f64, dimension: Dimension) -> Value {
-    json!({ "value": value, "unit": dimension.si_symbol() })
+    json!({ "value": number(value), "unit": dimension.si_symbol() })
 }
 
 fn status(status: &Status, error_estimate: Option<f64>) -> Value {
@@ -39,7 +48,7 @@ fn status(status: &Status, error_estimate: Option<f64>) -> Value {
         out.insert("advice".to_owned(), advice.clone().into());
     }
     if let Some(error) = error_estimate {
-        out.insert("error_estimate".to_owned(), error.into());
+        out.insert("error_estimate".to_owned(), number(error));
     }
     Value::Object(out)
 }
@@ -53,10 +62,10 @@ fn check(check: &Check) -> Value {
         "code": check.code,
         "name": check.name,
         "state": check.state.word(),
-        "value": check.value,
-        "limit": check.limit,
+        "value": check.value.map(number),
+        "limit": check.limit.map(number),
         "unit": check.dimension.si_symbol(),
-        "margin": check.margin,
+        "margin": check.margin.map(number),
         "required": check.required,
         "sense": sense,
         "title": check.title,
@@ -82,5 +91,5 @@ fn axis(axis: &Axis) -> Value {
 }
 
 fn branch(branch: &Branch) -> Value {
-    json!({ "name": branch.name, "x": branch.x, "y": branch.y })
+    json!({ "name": branch.name, "x": numbers(&branch.x), "y": numbers(&branch.y) })
 }

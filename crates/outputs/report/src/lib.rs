@@ -16,3 +16,4 @@ pub mod svg;
 
 mod escape;
 mod table;
+mod words;

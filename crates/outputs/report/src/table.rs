@@ -32,6 +32,7 @@ impl Column {
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     columns: Vec<Column>,
+    titles: Vec<String>,
     label: String,
     head: String,
     body: String,
@@ -47,19 +48,20 @@ impl Table {
             let _ = write!(head, "<th scope=\"col\"{}>{}</th>", column.class(), escape(title));
         }
         head.push_str("</tr></thead>\n");
-        Self { columns: columns.iter().map(|c| c.1).collect(), label: escape(caption), head, body: String::new(), rows: 0, class }
+        let titles = columns.iter().map(|c| escape(c.0)).collect();
+        Self { columns: columns.iter().map(|c| c.1).collect(), titles, label: escape(caption), head, body: String::new(), rows: 0, class }
     }
 
     /// Adds a row; its first cell heads it.
     pub(crate) fn row(&mut self, cells: &[String]) {
         self.rows += 1;
         self.body.push_str("<tr>");
-        for (i, (cell, column)) in cells.iter().zip(&self.columns).enumerate() {
+        for (i, ((cell, column), title)) in cells.iter().zip(&self.columns).zip(&self.titles).enumerate() {
             let class = column.class();
             if i == 0 {
                 let _ = write!(self.body, "<th scope=\"row\"{class}>{cell}</th>");
             } else {
-                let _ = write!(self.body, "<td{class}>{cell}</td>");
+                let _ = write!(self.body, "<td{class} data-label=\"{title}\">{cell}</td>");
             }
         }
         self.body.push_str("</tr>\n");

@@ -84,12 +84,102 @@ fn the_page_is_well_formed_complete_and_small() {
         "thin &amp; light",
         "COMP020",
         "lan2010",
-        "newton_iterations",
+        "newton_<wbr />iterations",
         "1 mm ± 0.02 mm",
         &report.input_sha256,
     ] {
         assert!(page.contains(text), "{text}");
     }
+}
+
+#[test]
+fn backticks_become_code_on_the_page_only() {
+    let mut report = fixture::report();
+    report.outcome.warnings[0].message = "beam `b2` and `design.beam_depth`; `<b>`, one ` alone".to_owned();
+    report.outcome.checks[0].basis = "over `requirements.travel`".to_owned();
+    report.outcome.checks[0].advice = Some("raise `b1`".to_owned());
+    report.outcome.status.kind = StatusKind::NoEquilibriumBeyond;
+    report.outcome.status.advice = Some("lower `b2`".to_owned());
+    report.parameters[0].doc = "as `b3`".to_owned();
+    report.model[0].text = "see `b4`".to_owned();
+    let page = html::page(&report);
+    parse(&page);
+    for text in [
+        "beam <code>b2</code> and <code>design.<wbr />beam_<wbr />depth</code>; <code>&lt;b&gt;</code>, one ` alone",
+        "over <code>requirements.<wbr />travel</code>",
+        "→ raise <code>b1</code>",
+        "→ lower <code>b2</code>",
+        "as <code>b3</code>",
+        "see <code>b4</code>",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    assert!(!page.contains("<b>"));
+    let document = json::document(&report.outcome, "", "");
+    assert_eq!(document["checks"][0]["basis"], "over `requirements.travel`");
+}
+
+#[test]
+fn margins_are_limited_and_numbers_have_true_minus_signs() {
+    let mut report = fixture::report();
+    let margins = [-70_657.081, 70_657.081, -0.25, f64::INFINITY, f64::NAN];
+    for (check, margin) in report.outcome.checks.iter_mut().zip(margins) {
+        check.margin = Some(margin);
+    }
+    let page = html::page(&report);
+    let document = parse(&page);
+    let cells = |class: &str| -> Vec<String> {
+        document
+            .descendants()
+            .filter(|n| n.has_tag_name("td") && n.attribute("class") == Some("number"))
+            .filter(|n| n.ancestors().any(|a| a.has_tag_name("table") && a.attribute("class") == Some(class)))
+            .map(|n| n.text().unwrap_or_default().to_owned())
+            .collect()
+    };
+    let shown: Vec<String> = cells("checks").into_iter().skip(2).step_by(3).take(margins.len()).collect();
+    assert_eq!(shown, ["< −1000 %", "> +1000 %", "−25.0 %", "> +1000 %", "–"]);
+    assert!(cells("metrics").contains(&"−0.02009 N/mm".to_owned()));
+    for class in ["checks", "metrics", "parameters", "data"] {
+        assert!(!cells(class).is_empty() && cells(class).iter().all(|c| !c.contains('-')), "{class}: {:?}", cells(class));
+    }
+}
+
+#[test]
+fn zero_has_no_sign() {
+    let mut outcome = fixture::outcome();
+    for curve in &mut outcome.curves {
+        curve.branches[0].x[0] = -0.0;
+        curve.branches[0].y[0] = -0.0;
+    }
+    outcome.metrics[0].value = -0.0;
+    outcome.error_estimate = Some(-0.0);
+    (outcome.checks[0].value, outcome.checks[0].limit, outcome.checks[0].margin) = (Some(-0.0), Some(-0.0), Some(-0.0));
+    let wide = csv::curves(&outcome);
+    assert!(wide.contains("\r\nloading,0,0,0\r\n"));
+    outcome.curves[1].branches[0].name = "other".to_owned();
+    assert!(csv::curves(&outcome).contains("\r\nforce,loading,0,0,"));
+    let text = json::document(&outcome, "", "").to_string();
+    assert!(!text.contains("-0.0,") && !text.contains("-0.0]") && !text.contains("-0.0}") && !text.contains("-0,"));
+}
+
+#[test]
+fn quantities_stand_over_their_units_and_lines_keep_their_order() {
+    let mut plot = fixture::force_plot();
+    plot.y.display = fixture::unit("N/mm");
+    let labels = ["b1", "b2", "b3"];
+    for (series, label) in plot.series.iter_mut().zip(labels) {
+        series.label = label.to_owned();
+    }
+    let count = plot.series.len();
+    let drawing = svg::draw_plot(&plot, PlotSize::default());
+    let has = |drawing: &Drawing, text: &str| drawing.texts.iter().any(|t| t.text == text);
+    assert!(has(&drawing, "Displacement Δ / mm") && drawing.texts.iter().any(|t| t.text.ends_with(" / (N/mm)")));
+    let named: Vec<&str> = drawing.texts.iter().map(|t| t.text.as_str()).filter(|t| labels.contains(t)).collect();
+    assert!(count > 1);
+    assert_eq!(named, labels[..count]);
+    let scene = svg::draw_scene(&fixture::scene(), SceneSize::default());
+    assert!(scene.texts.iter().any(|t| t.text.ends_with(" / MPa")) && has(&scene, "mirror line"));
+    assert!(html::page(&fixture::report()).contains(">Displacement Δ / mm</th>"));
 }
 
 #[test]

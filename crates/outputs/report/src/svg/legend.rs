@@ -1,7 +1,7 @@
 //! The legend below a figure.
 
 use super::canvas::{Anchor, Canvas, Style};
-use super::colour::Paint;
+use super::colour::{self, Paint};
 use super::place::Rect;
 use super::text;
 
@@ -9,12 +9,16 @@ const SIZE: f64 = 13.0;
 const ROW: f64 = 19.0;
 const SWATCH: f64 = 34.0;
 const GAP: f64 = 18.0;
+/// Colours in a swatch of values.
+const STEPS: u8 = 10;
 
 /// What stands before a legend text.
 #[derive(Clone, Debug)]
 pub(super) enum Swatch {
     /// A line with a dash pattern (empty is solid) and small squares on it or not.
     Line { paint: Paint, width: f64, dash: &'static str, squares: bool },
+    /// A line coloured by values; `faded` for a copy.
+    Values { faded: bool },
     /// A hatched region.
     Band,
     /// A marked point.
@@ -64,6 +68,18 @@ fn swatch(canvas: &mut Canvas, swatch: &Swatch, x: f64, y: f64) {
                 let r = Rect::sized(x + 0.5 * (SWATCH - side), y - 0.5 * side, side, side);
                 canvas.rect(&r, &paint.attributes("fill"));
             }
+        }
+        Swatch::Values { faded } => {
+            canvas.open(&format!(r#"opacity="{}""#, if *faded { 0.5 } else { 1.0 }));
+            let r = Rect::sized(x, y - 3.0, SWATCH, 6.0);
+            canvas.rect(&r.grown(0.8), &Paint::Ink.attributes("fill"));
+            for part in 0..STEPS {
+                // Each reaches to the end under the next ones, so that no seam shines through.
+                let left = r.x0 + f64::from(part) / f64::from(STEPS) * r.width();
+                let level = part * ((colour::LEVELS - 1) / (STEPS - 1));
+                canvas.rect(&Rect { x0: left, ..r }, &format!(r#"fill="{}""#, colour::of_level(level)));
+            }
+            canvas.close();
         }
         Swatch::Band => band(canvas, &Rect::sized(x, y - 7.0, SWATCH, 14.0)),
         Swatch::Point => {

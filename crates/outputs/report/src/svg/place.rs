@@ -72,6 +72,12 @@ pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     maths::hypot(b[0] - a[0], b[1] - a[1])
 }
 
+/// A leader from the edge of the circle around its point; nothing if it ends inside.
+pub(super) fn from_edge([from, to]: [[f64; 2]; 2], radius: f64) -> Option<[[f64; 2]; 2]> {
+    let part = radius / distance(from, to);
+    (part < 1.0).then(|| [[0, 1].map(|i| from[i] + part * (to[i] - from[i])), to])
+}
+
 /// Where a label was put.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
@@ -206,6 +212,13 @@ mod tests {
         assert_eq!(clip([-5.0, 11.0], [15.0, 11.0], &r), None);
         assert!(clip([-1.0, 2.0], [2.0, -1.5], &r).is_some());
         assert!(clip([-3.0, 2.0], [2.0, -3.0], &r).is_none());
+    }
+
+    #[test]
+    fn a_leader_begins_outside_its_circle() {
+        let [from, to] = from_edge([[1.0, 2.0], [4.0, 6.0]], 2.5).unwrap();
+        assert!(distance(from, [2.5, 4.0]) < 1e-12 && distance(to, [4.0, 6.0]) < 1e-12);
+        assert!(from_edge([[1.0, 2.0], [4.0, 6.0]], 5.5).is_none() && from_edge([[0.0; 2]; 2], 1.0).is_none());
     }
 
     #[test]

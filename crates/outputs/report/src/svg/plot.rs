@@ -6,9 +6,10 @@ use forcewright_model::{Axis, Plot, Series, Stroke};
 use super::canvas::{Anchor, Canvas, Drawing, Style};
 use super::colour::Paint;
 use super::legend::{self, Entry, Swatch, dashed};
-use super::place::{BESIDE, Placer, Rect, distance};
+use super::place::{BESIDE, Placer, Rect, distance, from_edge};
 use super::text;
 use super::ticks::{self, Ticks};
+use crate::words::{over_unit, with_minus};
 
 /// Size of a plot in drawing units; about a CSS pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +36,8 @@ impl PlotSize {
 const TICK: Style = Style::muted(13.0);
 const TITLE: Style = Style { size: 14.0, bold: true, paint: Paint::Ink, halo: false };
 const SPAN: Style = Style::label(13.0, Paint::Span);
+/// Radius of a marked point.
+const MARKER: f64 = 4.5;
 const SPAN_ROW: f64 = 20.0;
 const EDGE: f64 = 14.0;
 
@@ -86,10 +89,8 @@ fn shown(axis: &Axis, si: f64) -> Option<f64> {
     ticks::sane(si).and_then(|v| ticks::sane(axis.display.from_si(v)))
 }
 
-/// `Displacement Δ in mm`.
 fn axis_title(axis: &Axis) -> String {
-    let unit = axis.display.pretty();
-    if unit.is_empty() { axis.label.clone() } else { format!("{} in {unit}", axis.label) }
+    over_unit(&axis.label, &axis.display)
 }
 
 /// Draws a plot.
@@ -343,7 +344,7 @@ fn levels(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) -> Vec<Entry>
         let (paint, width, dash, _) = look(level.stroke);
         let swatch = Swatch::Line { paint, width, dash, squares: false };
         if !frame.holds(level.at) {
-            let text = format!("{} ({}, beyond the scale)", level.label, format_si(level.at, &frame.plot.y.display, 4));
+            let text = format!("{} ({}, beyond the scale)", level.label, with_minus(&format_si(level.at, &frame.plot.y.display, 4)));
             beyond.push(Entry { swatch, text });
             continue;
         }
@@ -386,7 +387,7 @@ fn markers(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
     }
     let attributes = format!(r#"{} stroke-width="2""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink));
     for (_, p) in &points {
-        canvas.circle(*p, 4.5, &attributes);
+        canvas.circle(*p, MARKER, &attributes);
     }
     let style = Style::label(14.0, Paint::Ink);
     for (marker, p) in points {
@@ -395,7 +396,7 @@ fn markers(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
             continue;
         }
         if let Some(placed) = placer.place(p, style.width(&text), style.height(), BESIDE) {
-            if let Some(leader) = placed.leader {
+            if let Some(leader) = placed.leader.and_then(|l| from_edge(l, MARKER + 1.0)) {
                 canvas.segments(&[leader], &format!(r#"fill="none" {} stroke-width="1""#, Paint::Ink.attributes("stroke")));
             }
             canvas.text_in(&text, &placed.rect, style);
@@ -405,8 +406,7 @@ fn markers(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
 
 fn entries(plot: &Plot, beyond: &[Entry]) -> Vec<Entry> {
     let mut out = Vec::new();
-    // The last one drawn lies in front and is named first.
-    for series in plot.series.iter().rev().filter(|s| !s.label.is_empty()) {
+    for series in plot.series.iter().filter(|s| !s.label.is_empty()) {
         let (paint, width, dash, squares) = look(series.stroke);
         out.push(Entry { swatch: Swatch::Line { paint, width, dash, squares }, text: series.label.clone() });
     }
@@ -418,8 +418,9 @@ fn entries(plot: &Plot, beyond: &[Entry]) -> Vec<Entry> {
 
 /// The plot in words, for those who cannot see it.
 fn description(plot: &Plot, caption: &str) -> String {
-    let number =
-        |axis: &Axis, si: f64| if axis.display.from_si(si).is_finite() { format_si(si, &axis.display, 4) } else { "unknown".to_owned() };
+    let number = |axis: &Axis, si: f64| {
+        if axis.display.from_si(si).is_finite() { with_minus(&format_si(si, &axis.display, 4)) } else { "unknown".to_owned() }
+    };
     let mut out = String::from(caption);
     let mut say = |text: String| {
         if !out.is_empty() {

@@ -6,9 +6,10 @@ use forcewright_model::{ColourScale, Item, Role, Scene};
 use super::canvas::{Anchor, Canvas, Drawing, Style, n};
 use super::colour::{self, Paint};
 use super::legend::{self, Entry, Swatch};
-use super::place::{BESIDE, Placer, Rect, distance};
+use super::place::{BESIDE, Placer, Rect, distance, from_edge};
 use super::symbols;
 use super::ticks;
+use crate::words::{over_unit, with_minus};
 
 /// Size of a picture in drawing units; about a CSS pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -301,7 +302,8 @@ fn labels(canvas: &mut Canvas, placer: &mut Placer, scene: &Scene, view: &View) 
         // An arrow's label needs no leader as long as it is near.
         let beside = if matches!(item, Item::Arrow { .. }) { 40.0 } else { BESIDE };
         if let Some(placed) = placer.place(p, style.width(&text), style.height(), beside) {
-            if let Some(leader) = placed.leader {
+            let radius = if matches!(item, Item::Marker { .. }) { symbols::RING + 1.1 } else { 0.0 };
+            if let Some(leader) = placed.leader.and_then(|l| from_edge(l, radius)) {
                 canvas.segments(&[leader], &format!(r#"fill="none" {} stroke-width="1""#, style.paint.attributes("stroke")));
             }
             canvas.text_in(&text, &placed.rect, style);
@@ -326,8 +328,7 @@ fn scale_bar(canvas: &mut Canvas, view: &View, unit: &Unit, width: f64, top: f64
 
 /// The scale of the colours with its unit, its end and the limit; returns the place below.
 fn colour_bar(canvas: &mut Canvas, scale: &ColourScale, left: f64, right: f64, top: f64) -> f64 {
-    let unit = scale.display.pretty();
-    let title = if unit.is_empty() { scale.label.clone() } else { format!("{} in {unit}", scale.label) };
+    let title = over_unit(&scale.label, &scale.display);
     canvas.text(&TITLE.fit(&title, right - left), [left, top + 12.0], Anchor::Start, TITLE);
     let max = ticks::sane(scale.display.from_si(scale.max)).filter(|m| *m > 1e-290).unwrap_or(1.0);
     let limit = scale.limit.as_ref().and_then(|(v, name)| Some((ticks::sane(scale.display.from_si(*v)).filter(|v| *v > 0.0)?, name)));
@@ -338,7 +339,7 @@ fn colour_bar(canvas: &mut Canvas, scale: &ColourScale, left: f64, right: f64, t
     if let Some((value, name)) = &limit {
         let style = Style::label(13.0, Paint::Limit);
         let beyond = if *value > end { " →" } else { "" };
-        let text = format!("{name} {}{beyond}", format_si(scale.display.to_si(*value), &scale.display, 4));
+        let text = format!("{name} {}{beyond}", with_minus(&format_si(scale.display.to_si(*value), &scale.display, 4)));
         let text = style.fit(&text, right + 14.0 - left);
         let half = 0.5 * style.width(&text);
         let middle = at(*value).clamp(left + half, (right + 14.0 - half).max(left + half));
@@ -385,24 +386,24 @@ fn bar_ticks(canvas: &mut Canvas, max: f64, at: &dyn Fn(f64) -> f64, place: [f64
 
 /// What the line styles mean, for those that occur.
 fn entries(scene: &Scene) -> Vec<Entry> {
-    let has = |role: Role| {
-        scene.items.iter().any(|i| match i {
-            Item::Line { role: r, .. } | Item::Body { role: r, .. } => *r == role,
-            _ => false,
-        })
+    let count = |role: Role| {
+        scene.items.iter().filter(|i| matches!(i, Item::Line { role: r, .. } | Item::Body { role: r, .. } if *r == role)).count()
     };
-    let coloured = scene.scale.is_some() && scene.items.iter().any(|i| matches!(i, Item::Line { values: Some(_), .. }));
-    let mut out = Vec::new();
-    let mut add = |role: Role, paint, width, dash, text: &str| {
-        if has(role) {
-            out.push(Entry { swatch: Swatch::Line { paint, width, dash, squares: false }, text: text.to_owned() });
-        }
+    let coloured = |role: Role| {
+        scene.scale.is_some() && scene.items.iter().any(|i| matches!(i, Item::Line { role: r, values: Some(_), .. } if *r == role))
     };
-    let loaded = if coloured { Paint::Ink } else { Paint::Main };
-    add(Role::Undeformed, Paint::Reference, 1.4, "5 3.5", "as made");
-    add(Role::Deformed, loaded, 5.0, "", "under load");
-    add(Role::UndeformedCopy, Paint::Reference, 1.0, "2.5 3.5", "copy as made");
-    add(Role::DeformedCopy, Paint::Reference, 5.0, "", "copy under load");
-    add(Role::Construction, Paint::Muted, 1.0, "14 4 2 4", "construction line");
-    out
+    let line = |paint, width, dash| Swatch::Line { paint, width, dash, squares: false };
+    let loaded = |role, paint, faded| if coloured(role) { Swatch::Values { faded } } else { line(paint, 5.0, "") };
+    let construction = if count(Role::Construction) == 1 { "mirror line" } else { "construction line" };
+    [
+        (Role::Undeformed, line(Paint::Reference, 1.4, "5 3.5"), "as made"),
+        (Role::Deformed, loaded(Role::Deformed, Paint::Main, false), "under load"),
+        (Role::UndeformedCopy, line(Paint::Reference, 1.0, "2.5 3.5"), "copy as made"),
+        (Role::DeformedCopy, loaded(Role::DeformedCopy, Paint::Reference, true), "copy under load"),
+        (Role::Construction, line(Paint::Muted, 1.0, "14 4 2 4"), construction),
+    ]
+    .into_iter()
+    .filter(|(role, ..)| count(*role) > 0)
+    .map(|(_, swatch, text)| Entry { swatch, text: text.to_owned() })
+    .collect()
 }

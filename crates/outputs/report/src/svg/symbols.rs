@@ -108,8 +108,11 @@ pub(super) fn arrow(canvas: &mut Canvas, from: [f64; 2], to: [f64; 2]) {
     canvas.close();
 }
 
+/// Radius of a marked point, to the middle of its line.
+pub(super) const RING: f64 = 8.0;
+
 /// Draws a marked point: a ring with a halo.
 pub(super) fn ring(canvas: &mut Canvas, at: [f64; 2]) {
-    canvas.circle(at, 8.0, &format!(r#"fill="none" {} stroke-width="4.5""#, Paint::Paper.attributes("stroke")));
-    canvas.circle(at, 8.0, &format!(r#"fill="none" {} stroke-width="2.2""#, Paint::Limit.attributes("stroke")));
+    canvas.circle(at, RING, &format!(r#"fill="none" {} stroke-width="4.5""#, Paint::Paper.attributes("stroke")));
+    canvas.circle(at, RING, &format!(r#"fill="none" {} stroke-width="2.2""#, Paint::Limit.attributes("stroke")));
 }
