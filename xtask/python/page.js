@@ -12,9 +12,11 @@ function shown(element) {
   return element.checkVisibility({ opacityProperty: true, visibilityProperty: true });
 }
 
-function figures() {
+function figures(wanted) {
   const all = [...document.querySelectorAll("figure")];
   if (all.length === 0) return ["no figure in the page"];
+  const missing = wanted.filter((id) => !document.getElementById(`figure-${id}`));
+  if (missing.length > 0) return missing.map((id) => `the figure ${id} is not in the page`);
   const empty = all.filter((figure) => {
     const drawings = [...figure.querySelectorAll("svg")].map((svg) => svg.getBoundingClientRect());
     return !drawings.some((box) => box.width > 0 && box.height > 0);

@@ -80,15 +80,16 @@ impl Lan {
         };
         let mut run = |text: &str, set: &[&str]| solve(text, set).filter(|_| step());
         let inextensible = "model.beam=inextensible";
-        let (lengths, scaled) = scaled_text(2.5);
-        let mut scaled_set: Vec<&str> = vec!["design.thickness=1.3 mm", "design.depth=7 mm", "load.travel=34 mm"];
-        scaled_set.extend(lengths.iter().map(String::as_str));
+        let shapes = run(SHAPES, &[])?;
+        let lengths = scaled_shapes(&shapes, 2.5);
+        let mut scaled: Vec<&str> = vec!["design.thickness=1.3 mm", "design.depth=7 mm"];
+        scaled.extend(lengths.iter().map(String::as_str));
         Some(Self {
-            shapes: run(SHAPES, &[])?,
+            shapes,
             nodes: run(NODES, &[inextensible])?,
             longer: run(SHAPES, &["load.travel=17 mm"])?,
             thin: run(SHAPES, &["design.thickness=0.85 mm", "design.depth=16.28 mm", "load.travel=17 mm"])?,
-            scaled: run(&scaled, &scaled_set)?,
+            scaled: run(SHAPES, &scaled)?,
             turning: run(SHAPES, &["design.nodes.n5.rotation=free"])?,
             pinned: run(SHAPES, &["design.nodes.n1.support=pinned", "design.nodes.n2.support=pinned"])?,
             reissner: run(SHAPES, &["model.beam=reissner"])?,
@@ -104,7 +105,7 @@ impl Lan {
             // c of the paper's travel of 16.8 mm, on the path that goes on a little.
             let curve = self.thin.behaviour.curve.as_ref()?;
             let level = crate::analysis::RANGE_FRACTION * curve.force(thin_end);
-            curve.crossings(level).into_iter().find(|x| *x > 0.0)
+            curve.crossings(level).into_iter().rfind(|x| *x < 0.999 * thin_end)
         };
         match id {
             "force_shapes" => self.shapes.get("force_at_end"),
@@ -115,9 +116,9 @@ impl Lan {
             "stress_max" => mpa * self.shapes.get("stress_max"),
             "stress_beam3" => mpa * self.shapes.beam_stress_at_end(2),
             "travel_at_allowable" => mm * self.shapes.get("travel_at_allowable_stress"),
-            "sign_miss_printed" => mm * beam4_end(1.148).0,
-            "sign_miss_corrected" => mm * beam4_end(-1.148).0,
-            "sign_angle_printed" => beam4_end(1.148).1.to_degrees(),
+            "sign_miss_printed" => mm * self.beam4_end(-1.0).0,
+            "sign_miss_corrected" => mm * self.beam4_end(1.0).0,
+            "sign_angle_printed" => self.beam4_end(-1.0).1.to_degrees(),
             "thin_travel" => mm * self.thin.get("travel_at_allowable_stress"),
             "thin_range_start" => mm * thin_start().unwrap_or(f64::NAN),
             "thin_range" => mm * (thin_end - thin_start().unwrap_or(f64::NAN)),
@@ -134,7 +135,7 @@ impl Lan {
             "slider_turns" => self.turning.get("force_at_end"),
             "ground_pinned" => self.pinned.get("force_at_end"),
             "reissner_force" => self.reissner.get("force_at_end"),
-            "prototype_force" => self.prototype.get("force_at_end"),
+            "prototype_force" => self.prototype.force(14.5e-3),
             _ => self.shape_value(id),
         }
     }
@@ -155,16 +156,34 @@ impl Lan {
         }
     }
 
+    /// How far beam 4 of Table 3, with c2 times `sign`, ends from n5, m, and the angle of its chord to the nodes' one, rad.
+    fn beam4_end(&self, sign: f64) -> (f64, f64) {
+        let nodes = &self.nodes.design.network.nodes;
+        let (n4, n5) = (nodes[3].position_m, nodes[4].position_m);
+        let wanted = [n5[0] - n4[0], n5[1] - n4[1]];
+        let printed = &self.shapes.design.network.beams[3].shape;
+        let mut angle = printed.angle_rad().to_vec();
+        angle[2] *= sign;
+        let Ok(shape) = Shape::new(angle, printed.length_m()) else { return (f64::NAN, f64::NAN) };
+        let chord = shape.chord_m();
+        let turn = maths::atan2(chord[1], chord[0]) - maths::atan2(wanted[1], wanted[0]);
+        (maths::hypot(chord[0] - wanted[0], chord[1] - wanted[1]), turn.abs())
+    }
+
     fn invariance(&self) -> f64 {
         normalised(&self.scaled) / normalised(&self.shapes) - 1.0
     }
 }
 
+/// Width of the design box and travel, Table 2 of the paper.
+const LX_M: f64 = 3.2e-2;
+const TRAVEL_M: f64 = 13.6e-3;
+
 /// F·Lx²/EI with the distance of n1 and n2 for Lx, at the end of the path.
 fn normalised(solved: &Solved) -> f64 {
     let nodes = &solved.design.network.nodes;
     // The paper's Lx = 3.2 cm spans from n1 to n2 in the printed design; here the scale of lengths is that of its depth of travel.
-    let lx = 3.2e-2 * solved.design.travel_m / 13.6e-3;
+    let lx = LX_M * solved.design.travel_m / TRAVEL_M;
     let ei = solved.design.network.beams.first().map_or(f64::NAN, |b| b.section.bending_stiffness_n_m2());
     debug_assert!(nodes.len() == 5);
     solved.get("force_at_end") * lx * lx / ei
@@ -174,21 +193,15 @@ fn stress_at(solved: &Solved, displacement_m: f64) -> f64 {
     solved.behaviour.path.at(displacement_m).ok().and_then(|p| p.peak_stress()).map_or(f64::NAN, |(_, s)| s.stress_pa)
 }
 
-/// Settings that scale the lengths of the printed shapes, and the text to put them on.
-fn scaled_text(scale: f64) -> (Vec<String>, String) {
-    let lengths = [3.404, 1.987, 2.199, 1.959];
-    let set = lengths.iter().enumerate().map(|(i, l)| format!("design.beams.b{}.length={} cm", i + 1, l * scale));
-    let n1 = format!("design.nodes.n1.at=[\"{} cm\", \"0 cm\"]", 0.25 * scale);
-    (set.chain(std::iter::once(n1)).collect(), SHAPES.to_owned())
-}
-
-/// How far beam 4 of Table 3 with this c2 ends from n5, m, and the angle of its chord to the nodes' one, rad.
-fn beam4_end(c2: f64) -> (f64, f64) {
-    let wanted = [2.5e-3 - 12.44e-3, 40e-3 - 24e-3];
-    let Ok(shape) = Shape::new(vec![2.394, 0.226, c2], 19.59e-3) else { return (f64::NAN, f64::NAN) };
-    let chord = shape.chord_m();
-    let turn = maths::atan2(chord[1], chord[0]) - maths::atan2(wanted[1], wanted[0]);
-    (maths::hypot(chord[0] - wanted[0], chord[1] - wanted[1]), turn.abs())
+/// Settings that scale every length of the printed shapes.
+fn scaled_shapes(shapes: &Solved, scale: f64) -> Vec<String> {
+    let network = &shapes.design.network;
+    let beams = network.beams.iter().zip(&shapes.design.beam_names);
+    let mut set: Vec<String> = beams.map(|(b, name)| format!("design.beams.{name}.length={:e} m", scale * b.shape.length_m())).collect();
+    let [x, y] = network.nodes[0].position_m.map(|v| scale * v);
+    set.push(format!("design.nodes.n1.at=[\"{x:e} m\", \"{y:e} m\"]"));
+    set.push(format!("load.travel={:e} m", scale * shapes.design.travel_m));
+    set
 }
 
 fn lan2010(progress: Progress<'_>) -> Vec<ReproductionRow> {
