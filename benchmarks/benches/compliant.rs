@@ -6,7 +6,7 @@ use forcewright::contract::family::Mechanism;
 use forcewright::contract::project::Project;
 use forcewright::contract::read;
 use forcewright::{Choices, Loaded, gallery};
-use forcewright_beam::{Settings, Theory, trace};
+use forcewright_beam::{CurveSolver, Settings, Theory, trace};
 
 fn main() {
     divan::main();
@@ -55,6 +55,25 @@ fn reissner_34_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
 #[divan::bench(args = ACCURACIES, sample_count = 50)]
 fn reissner_137_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
     path(bencher, 137, Theory::Reissner, accuracy);
+}
+
+/// The same 34 displacements by the fast curve solver: force, stiffness, largest stress.
+fn curve(bencher: Bencher<'_, '_>, theory: Theory, accuracy: f64) {
+    let design = design();
+    let stations: Vec<f64> = (0..34).map(|i| 13.6e-3 * f64::from(i) / 33.0).collect();
+    let settings = Settings { theory, accuracy, ..Settings::default() };
+    let mut solver = CurveSolver::new();
+    bencher.bench_local(|| solver.solve(black_box(&design.network), &stations, &settings).map(|r| r.force_n[33]));
+}
+
+#[divan::bench(args = ACCURACIES, sample_count = 200)]
+fn fast_inextensible_34_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
+    curve(bencher, Theory::Inextensible, accuracy);
+}
+
+#[divan::bench(args = ACCURACIES, sample_count = 200)]
+fn fast_reissner_34_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
+    curve(bencher, Theory::Reissner, accuracy);
 }
 
 /// Path at the stations of a report, with the refinement of the interpolation.

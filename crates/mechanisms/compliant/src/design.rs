@@ -2,12 +2,14 @@
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::text::closest;
-use forcewright_base::units::{Dimension, Quantity, Unit, format_si};
-use forcewright_beam::{Beam, Drive, Joint, Network, NetworkError, Node, Rotation, Section, Shape, Support, Theory};
-use forcewright_contract::describe::{Located, Member, Origin, Slot};
-use forcewright_elements::materials::{self, Property};
+use forcewright_base::units::{Dimension, Quantity, Unit};
+use forcewright_beam::{Beam, Drive, Joint, Network, Node, Rotation, Section, Shape, Support, Theory};
+use forcewright_contract::describe::{Located, Member, Origin};
+use forcewright_elements::materials::{self};
 
+use crate::material::{catalogue_entry, fill_material, material_sources};
 use crate::metrics::METRICS;
+use crate::rules::{check_held, check_mirror, check_network};
 use crate::spec::{self, Spec};
 
 /// A design, ready to be solved. SI units.
@@ -194,29 +196,6 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     })
 }
 
-fn catalogue_entry(material: &spec::Material) -> Option<&'static materials::Material> {
-    materials::find(&material.catalogue.as_ref()?.value)
-}
-
-/// Sources of the values that the catalogue filled in, each once.
-fn material_sources(material: &spec::Material) -> Vec<&'static str> {
-    let Some(entry) = catalogue_entry(material) else { return Vec::new() };
-    let taken = [
-        (&material.young_modulus, &entry.young_modulus_pa),
-        (&material.poisson_ratio, &entry.poisson_ratio),
-        (&material.yield_stress, &entry.yield_stress_pa),
-        (&material.density, &entry.density_kg_per_m3),
-    ];
-    let from_catalogue = |slot: &Slot<Quantity>| matches!(slot, Some(Located { origin: Origin::Catalogue(_), .. }));
-    let mut keys: Vec<&'static str> = Vec::new();
-    for key in taken.into_iter().filter(|(slot, _)| from_catalogue(slot)).filter_map(|(_, p)| p.as_ref()).flat_map(Property::source_keys) {
-        if !keys.contains(&key) {
-            keys.push(key);
-        }
-    }
-    keys
-}
-
 fn theory_of(spec: &Spec) -> Theory {
     match spec.model.beam.as_ref().map(|b| b.value) {
         Some("inextensible") => Theory::Inextensible,
@@ -238,57 +217,6 @@ fn display_units(spec: &Spec) -> DisplayUnits {
         displacement,
         force,
     }
-}
-
-/// Fills what the catalogue knows, and says in words where the data come from.
-fn fill_material(material: &mut spec::Material, diagnostics: &mut Diagnostics) -> String {
-    let mut origin = "project file".to_owned();
-    if let Some(entry) = &material.catalogue {
-        let span = entry.span;
-        let Some(found) = materials::find(&entry.value) else {
-            let help = "`forcewright materials` lists the catalogue; or leave `use` out and give the values yourself";
-            let near = closest(&entry.value, materials::names());
-            diagnostics.push(
-                Diagnostic::error("E0308", span, "no such material in the catalogue")
-                    .label("not known")
-                    .help(near.map_or_else(|| help.to_owned(), |n| format!("did you mean \"{n}\"? {help}"))),
-            );
-            // What is missing for want of the entry need not be reported as well.
-            return origin;
-        };
-        let fill = |slot: &mut Slot<Quantity>, property: Option<&Property>, symbol: &str| {
-            if let (None, Some(property)) = (&slot, property)
-                && let Ok(unit) = Unit::parse(symbol)
-            {
-                let value = Quantity { si: property.value, unit, tolerance: None };
-                *slot = Some(Located {
-                    value,
-                    span,
-                    origin: Origin::Catalogue(format!("{}, {} ({})", found.name, property.kind, property.source)),
-                });
-            }
-        };
-        fill(&mut material.young_modulus, found.young_modulus_pa.as_ref(), "GPa");
-        fill(&mut material.poisson_ratio, found.poisson_ratio.as_ref(), "");
-        fill(&mut material.yield_stress, found.yield_stress_pa.as_ref(), "MPa");
-        fill(&mut material.density, found.density_kg_per_m3.as_ref(), "kg/m^3");
-        let mut overridden = Vec::new();
-        for (what, slot, property, symbol) in [
-            ("young_modulus", &material.young_modulus, &found.young_modulus_pa, "GPa"),
-            ("poisson_ratio", &material.poisson_ratio, &found.poisson_ratio, "1"),
-            ("yield_stress", &material.yield_stress, &found.yield_stress_pa, "MPa"),
-            ("density", &material.density, &found.density_kg_per_m3, "kg/m^3"),
-        ] {
-            if let (Some(Located { origin: Origin::File, value, .. }), Some(property), Ok(unit)) = (slot, property, Unit::parse(symbol)) {
-                overridden.push(format!("{what} = {value} instead of {}", format_si(property.value, &unit, 4)));
-            }
-        }
-        origin = format!("catalogue entry {}", found.name);
-        if !overridden.is_empty() {
-            origin = format!("{origin}; the project file overrides {}", overridden.join(", "));
-        }
-    }
-    origin
 }
 
 fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Requirements> {
@@ -716,128 +644,4 @@ impl Builder<'_> {
 fn unit([x, y]: [f64; 2]) -> [f64; 2] {
     let length = forcewright_base::maths::hypot(x, y);
     [x / length, y / length]
-}
-
-/// What the engine finds wrong with the network, at the place of its cause.
-fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut Diagnostics) {
-    let Err(error) = network.check() else { return };
-    let beam_span = |beam: usize| spec.design.beams.get(beam).map_or(place, |b| b.name.span);
-    let node_span = |node: usize| spec.design.nodes.get(node).map_or(place, |n| n.name.span);
-    let node_name = |node: usize| spec.design.nodes.get(node).map_or("?", |n| n.name.value.as_str());
-    let beam_name = |beam: usize| spec.design.beams.get(beam).map_or("?", |b| b.name.value.as_str());
-    let diagnostic = match error {
-        NetworkError::DoesNotClose { beam, gap_m } => Diagnostic::error(
-            "E0502",
-            beam_span(beam),
-            format!("the shape of beam `{}` misses its node by {:.3e} m", beam_name(beam), gap_m),
-        )
-        .help("leave out `at` of one of its nodes, so that it follows from the shape, or give `bend` instead of `angle` and `length`"),
-        NetworkError::LooseNode { node } => {
-            Diagnostic::error("E0510", node_span(node), format!("no beam ends at node `{}`", node_name(node))).help("remove it, or join it")
-        }
-        NetworkError::Mechanism { node } => {
-            Diagnostic::error("E0505", node_span(node), format!("the part of the network with node `{}` can move freely", node_name(node)))
-                .label("this part")
-                .help("clamp or pin a node of it, or join it to the rest")
-        }
-        NetworkError::DriveBlocked { node } => {
-            let span = spec.load.node.as_ref().map_or(place, |n| n.span);
-            Diagnostic::error("E0506", span, format!("node `{}` cannot move in the direction of the load", node_name(node)))
-                .label("held by its support")
-                .help("choose a direction that its support allows, or another node")
-        }
-        NetworkError::TooLarge { count } => {
-            let list = if spec.design.beams.len() > Network::LARGEST {
-                spec.design.beams.last().map(|b| b.name.span)
-            } else {
-                spec.design.nodes.last().map(|n| n.name.span)
-            };
-            Diagnostic::error("E0311", list.unwrap_or(place), format!("{count} nodes or beams, at most {} are accepted", Network::LARGEST))
-                .label("too many")
-                .help("use `layout.mirror` for a symmetric mechanism, or split it")
-        }
-        NetworkError::Section { beam, what, value } => Diagnostic::error(
-            "E0509",
-            beam_span(beam),
-            format!("{what} of beam `{}` is {value:.3e} in SI units, out of range", beam_name(beam)),
-        )
-        .label("this beam")
-        .help("check thickness, depth and material; the parameter table gives the ranges"),
-        other => {
-            let span = other_place(&other, &beam_span, &node_span).unwrap_or(place);
-            Diagnostic::error("E0509", span, other.to_string()).help("see the parameter table for the accepted range")
-        }
-    };
-    diagnostics.push(diagnostic);
-}
-
-/// On the mirror line, symmetry holds a node's rotation and its motion across; the network must say so, or one half alone would move
-/// otherwise than the two together. A beam on the line would be counted twice.
-fn check_mirror(network: &Network, mirror: Mirror, spec: &Spec, diagnostics: &mut Diagnostics) {
-    let size = network.beams.iter().map(|b| b.shape.length_m()).fold(0.0, f64::max);
-    let off = |[x, y]: [f64; 2]| match mirror {
-        Mirror::X(at) => (x - at).abs() > 1e-9 * size,
-        Mirror::Y(at) => (y - at).abs() > 1e-9 * size,
-    };
-    for (node, drawn) in network.nodes.iter().zip(&spec.design.nodes) {
-        let guided = match node.support {
-            Support::Clamped => true,
-            Support::Slider { direction, rotation: Rotation::Fixed } => match mirror {
-                Mirror::X(_) => direction[0].abs() < 1e-9,
-                Mirror::Y(_) => direction[1].abs() < 1e-9,
-            },
-            _ => false,
-        };
-        if !off(node.position_m) && !guided {
-            let along = if matches!(mirror, Mirror::X(_)) { "[0, 1]" } else { "[1, 0]" };
-            diagnostics.push(
-                Diagnostic::error(
-                    "E0511",
-                    drawn.name.span,
-                    format!("node `{}` lies on the mirror line, but could leave it or turn", drawn.name.value),
-                )
-                .label("on the mirror line")
-                .help(format!("write what symmetry does: `support = \"slider\", direction = {along}`, or clamp it")),
-            );
-        }
-    }
-    for (beam, drawn) in network.beams.iter().zip(&spec.design.beams) {
-        let start = network.nodes[beam.start].position_m;
-        let on_line = (0..=4).all(|i| {
-            let [x, y] = beam.shape.point_m(f64::from(i) / 4.0);
-            !off([start[0] + x, start[1] + y])
-        });
-        if on_line {
-            diagnostics.push(
-                Diagnostic::error(
-                    "E0511",
-                    drawn.name.span,
-                    format!("beam `{}` lies on the mirror line and would be counted twice", drawn.name.value),
-                )
-                .label("on the mirror line")
-                .help("draw the whole mechanism without `layout.mirror`"),
-            );
-        }
-    }
-}
-
-/// Something besides the moved node must hold the mechanism, or it follows the load as a whole.
-fn check_held(network: &Network, spec: &Spec, diagnostics: &mut Diagnostics) {
-    let driven = network.drive.node();
-    let held = network.nodes.iter().enumerate().any(|(i, n)| i != driven && n.support != Support::Free);
-    if !held && let Some(node) = &spec.load.node {
-        diagnostics.push(
-            Diagnostic::error("E0505", node.span, "nothing but the moved node holds the mechanism")
-                .label("it would follow this node as a whole")
-                .help("clamp or pin another node: `support = \"clamped\"`"),
-        );
-    }
-}
-
-fn other_place(error: &NetworkError, beam_span: &dyn Fn(usize) -> Span, node_span: &dyn Fn(usize) -> Span) -> Option<Span> {
-    match *error {
-        NetworkError::Shape { beam, .. } | NetworkError::BeamOnOneNode { beam } => Some(beam_span(beam)),
-        NetworkError::Position { node } | NetworkError::Direction { node } => Some(node_span(node)),
-        _ => None,
-    }
 }

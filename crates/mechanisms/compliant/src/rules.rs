@@ -1,0 +1,131 @@
+//! Rules that a drawn network keeps, each fault reported at the place of its cause.
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
+use forcewright_beam::{Network, NetworkError, Rotation, Support};
+
+use crate::design::Mirror;
+use crate::spec::Spec;
+
+/// What the engine finds wrong with the network, at the place of its cause.
+pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut Diagnostics) {
+    let Err(error) = network.check() else { return };
+    let beam_span = |beam: usize| spec.design.beams.get(beam).map_or(place, |b| b.name.span);
+    let node_span = |node: usize| spec.design.nodes.get(node).map_or(place, |n| n.name.span);
+    let node_name = |node: usize| spec.design.nodes.get(node).map_or("?", |n| n.name.value.as_str());
+    let beam_name = |beam: usize| spec.design.beams.get(beam).map_or("?", |b| b.name.value.as_str());
+    let diagnostic = match error {
+        NetworkError::DoesNotClose { beam, gap_m } => Diagnostic::error(
+            "E0502",
+            beam_span(beam),
+            format!("the shape of beam `{}` misses its node by {:.3e} m", beam_name(beam), gap_m),
+        )
+        .help("leave out `at` of one of its nodes, so that it follows from the shape, or give `bend` instead of `angle` and `length`"),
+        NetworkError::LooseNode { node } => {
+            Diagnostic::error("E0510", node_span(node), format!("no beam ends at node `{}`", node_name(node))).help("remove it, or join it")
+        }
+        NetworkError::Mechanism { node } => {
+            Diagnostic::error("E0505", node_span(node), format!("the part of the network with node `{}` can move freely", node_name(node)))
+                .label("this part")
+                .help("clamp or pin a node of it, or join it to the rest")
+        }
+        NetworkError::DriveBlocked { node } => {
+            let span = spec.load.node.as_ref().map_or(place, |n| n.span);
+            Diagnostic::error("E0506", span, format!("node `{}` cannot move in the direction of the load", node_name(node)))
+                .label("held by its support")
+                .help("choose a direction that its support allows, or another node")
+        }
+        NetworkError::TooLarge { count } => {
+            let list = if spec.design.beams.len() > Network::LARGEST {
+                spec.design.beams.last().map(|b| b.name.span)
+            } else {
+                spec.design.nodes.last().map(|n| n.name.span)
+            };
+            Diagnostic::error("E0311", list.unwrap_or(place), format!("{count} nodes or beams, at most {} are accepted", Network::LARGEST))
+                .label("too many")
+                .help("use `layout.mirror` for a symmetric mechanism, or split it")
+        }
+        NetworkError::Section { beam, what, value } => Diagnostic::error(
+            "E0509",
+            beam_span(beam),
+            format!("{what} of beam `{}` is {value:.3e} in SI units, out of range", beam_name(beam)),
+        )
+        .label("this beam")
+        .help("check thickness, depth and material; the parameter table gives the ranges"),
+        other => {
+            let span = other_place(&other, &beam_span, &node_span).unwrap_or(place);
+            Diagnostic::error("E0509", span, other.to_string()).help("see the parameter table for the accepted range")
+        }
+    };
+    diagnostics.push(diagnostic);
+}
+
+/// On the mirror line, symmetry holds a node's rotation and its motion across; the network must say so, or one half alone would move
+/// otherwise than the two together. A beam on the line would be counted twice.
+pub(crate) fn check_mirror(network: &Network, mirror: Mirror, spec: &Spec, diagnostics: &mut Diagnostics) {
+    let size = network.beams.iter().map(|b| b.shape.length_m()).fold(0.0, f64::max);
+    let off = |[x, y]: [f64; 2]| match mirror {
+        Mirror::X(at) => (x - at).abs() > 1e-9 * size,
+        Mirror::Y(at) => (y - at).abs() > 1e-9 * size,
+    };
+    for (node, drawn) in network.nodes.iter().zip(&spec.design.nodes) {
+        let guided = match node.support {
+            Support::Clamped => true,
+            Support::Slider { direction, rotation: Rotation::Fixed } => match mirror {
+                Mirror::X(_) => direction[0].abs() < 1e-9,
+                Mirror::Y(_) => direction[1].abs() < 1e-9,
+            },
+            _ => false,
+        };
+        if !off(node.position_m) && !guided {
+            let along = if matches!(mirror, Mirror::X(_)) { "[0, 1]" } else { "[1, 0]" };
+            diagnostics.push(
+                Diagnostic::error(
+                    "E0511",
+                    drawn.name.span,
+                    format!("node `{}` lies on the mirror line, but could leave it or turn", drawn.name.value),
+                )
+                .label("on the mirror line")
+                .help(format!("write what symmetry does: `support = \"slider\", direction = {along}`, or clamp it")),
+            );
+        }
+    }
+    for (beam, drawn) in network.beams.iter().zip(&spec.design.beams) {
+        let start = network.nodes[beam.start].position_m;
+        let on_line = (0..=4).all(|i| {
+            let [x, y] = beam.shape.point_m(f64::from(i) / 4.0);
+            !off([start[0] + x, start[1] + y])
+        });
+        if on_line {
+            diagnostics.push(
+                Diagnostic::error(
+                    "E0511",
+                    drawn.name.span,
+                    format!("beam `{}` lies on the mirror line and would be counted twice", drawn.name.value),
+                )
+                .label("on the mirror line")
+                .help("draw the whole mechanism without `layout.mirror`"),
+            );
+        }
+    }
+}
+
+/// Something besides the moved node must hold the mechanism, or it follows the load as a whole.
+pub(crate) fn check_held(network: &Network, spec: &Spec, diagnostics: &mut Diagnostics) {
+    let driven = network.drive.node();
+    let held = network.nodes.iter().enumerate().any(|(i, n)| i != driven && n.support != Support::Free);
+    if !held && let Some(node) = &spec.load.node {
+        diagnostics.push(
+            Diagnostic::error("E0505", node.span, "nothing but the moved node holds the mechanism")
+                .label("it would follow this node as a whole")
+                .help("clamp or pin another node: `support = \"clamped\"`"),
+        );
+    }
+}
+
+fn other_place(error: &NetworkError, beam_span: &dyn Fn(usize) -> Span, node_span: &dyn Fn(usize) -> Span) -> Option<Span> {
+    match *error {
+        NetworkError::Shape { beam, .. } | NetworkError::BeamOnOneNode { beam } => Some(beam_span(beam)),
+        NetworkError::Position { node } | NetworkError::Direction { node } => Some(node_span(node)),
+        _ => None,
+    }
+}
