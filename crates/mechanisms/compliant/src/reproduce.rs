@@ -10,6 +10,7 @@ use forcewright_contract::tree::{self, Table, Value};
 
 use crate::analysis::{Behaviour, Measured, measure};
 use crate::design::{self, Design};
+use crate::force_curve::{ForceCurve, Interval};
 use crate::spec::Spec;
 
 /// The papers of this family.
@@ -67,7 +68,10 @@ struct Lan {
     scaled: Solved,
     turning: Solved,
     pinned: Solved,
+    /// Pairs of models beyond the paper's travel, w = 1 mm and 2 mm: inextensible is `longer` and `thick`.
     reissner: Solved,
+    thick: Solved,
+    thick_reissner: Solved,
     prototype: Solved,
 }
 
@@ -75,7 +79,7 @@ impl Lan {
     fn solve(progress: Progress<'_>) -> Option<Self> {
         let mut done = 0.0;
         let mut step = || {
-            done += 1.0 / 9.0;
+            done += 1.0 / 11.0;
             progress(done)
         };
         let mut run = |text: &str, set: &[&str]| solve(text, set).filter(|_| step());
@@ -92,7 +96,9 @@ impl Lan {
             scaled: run(SHAPES, &scaled)?,
             turning: run(SHAPES, &["design.nodes.n5.rotation=free"])?,
             pinned: run(SHAPES, &["design.nodes.n1.support=pinned", "design.nodes.n2.support=pinned"])?,
-            reissner: run(SHAPES, &["model.beam=reissner"])?,
+            reissner: run(SHAPES, &["model.beam=reissner", "load.travel=17 mm"])?,
+            thick: run(SHAPES, &["design.thickness=2 mm", "load.travel=17 mm"])?,
+            thick_reissner: run(SHAPES, &["design.thickness=2 mm", "model.beam=reissner", "load.travel=17 mm"])?,
             prototype: run(SHAPES, &["design.thickness=0.85 mm", "load.travel=16 mm"])?,
         })
     }
@@ -134,7 +140,14 @@ impl Lan {
             "least_stiffness" => 1e-2 * self.shapes.get("stiffness_min"),
             "slider_turns" => self.turning.get("force_at_end"),
             "ground_pinned" => self.pinned.get("force_at_end"),
-            "reissner_force" => self.reissner.get("force_at_end"),
+            "reissner_force" => self.reissner.force(TRAVEL_M),
+            "reissner_7" => softening(&self.reissner, &self.longer, 7e-3),
+            "reissner_16_8" => softening(&self.reissner, &self.longer, 16.8e-3),
+            "reissner_7_thick" => softening(&self.thick_reissner, &self.thick, 7e-3),
+            "reissner_16_8_thick" => softening(&self.thick_reissner, &self.thick, 16.8e-3),
+            "flat_2_5" => self.stroke(|c| c.longest_flat(0.025)),
+            "flat_5" => self.stroke(|c| c.longest_flat(0.05)),
+            "band_2_5" => self.stroke(|c| c.longest_within(0.975 * PRINTED_N, 1.025 * PRINTED_N)),
             "prototype_force" => self.prototype.force(14.5e-3),
             _ => self.shape_value(id),
         }
@@ -156,6 +169,11 @@ impl Lan {
         }
     }
 
+    /// An interval of the curve by the printed nodes over the travel, %.
+    fn stroke(&self, interval: impl Fn(&ForceCurve) -> Option<Interval>) -> f64 {
+        self.nodes.behaviour.curve.as_ref().and_then(interval).map_or(f64::NAN, |i| 100.0 * i.length() / TRAVEL_M)
+    }
+
     /// How far beam 4 of Table 3, with c2 times `sign`, ends from n5, m, and the angle of its chord to the nodes' one, rad.
     fn beam4_end(&self, sign: f64) -> (f64, f64) {
         let nodes = &self.nodes.design.network.nodes;
@@ -175,6 +193,13 @@ impl Lan {
     }
 }
 
+/// Relative change of the force by stretching and shear, %.
+fn softening(soft: &Solved, stiff: &Solved, displacement_m: f64) -> f64 {
+    100.0 * (soft.force(displacement_m) / stiff.force(displacement_m) - 1.0)
+}
+
+/// The force that the paper prints for the end of the travel.
+const PRINTED_N: f64 = 9.736;
 /// Width of the design box and travel, Table 2 of the paper.
 const LX_M: f64 = 3.2e-2;
 const TRAVEL_M: f64 = 13.6e-3;

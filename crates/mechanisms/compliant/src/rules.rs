@@ -8,6 +8,20 @@ use crate::spec::Spec;
 
 /// What the engine finds wrong with the network, at the place of its cause.
 pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut Diagnostics) {
+    // All loose nodes at once: the engine would name them one by one.
+    let mut loose = false;
+    for (index, node) in spec.design.nodes.iter().enumerate() {
+        if !network.beams.iter().any(|b| b.start == index || b.end == index) {
+            loose = true;
+            diagnostics.push(
+                Diagnostic::error("E0510", node.name.span, format!("no beam ends at node `{}`", node.name.value))
+                    .help("remove it, or join it"),
+            );
+        }
+    }
+    if loose {
+        return;
+    }
     let Err(error) = network.check() else { return };
     let beam_span = |beam: usize| spec.design.beams.get(beam).map_or(place, |b| b.name.span);
     let node_span = |node: usize| spec.design.nodes.get(node).map_or(place, |n| n.name.span);
@@ -20,9 +34,6 @@ pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnos
             format!("the shape of beam `{}` misses its node by {:.3e} m", beam_name(beam), gap_m),
         )
         .help("leave out `at` of one of its nodes, so that it follows from the shape, or give `bend` instead of `angle` and `length`"),
-        NetworkError::LooseNode { node } => {
-            Diagnostic::error("E0510", node_span(node), format!("no beam ends at node `{}`", node_name(node))).help("remove it, or join it")
-        }
         NetworkError::Mechanism { node } => {
             Diagnostic::error("E0505", node_span(node), format!("the part of the network with node `{}` can move freely", node_name(node)))
                 .label("this part")
