@@ -23,6 +23,7 @@ pub fn read<T: Describe + Default>(table: &Table, root: Span, diagnostics: &mut 
         missing: Vec::new(),
         reserved: Vec::new(),
         hint: None,
+        absent: false,
         diagnostics,
         unknown: &mut unknown,
     };
@@ -71,6 +72,8 @@ struct Reader<'a> {
     reserved: Vec<&'static Reserved>,
     /// Said where something is missing from this table.
     hint: Option<String>,
+    /// Whether the table is not there: only its defaults are filled in.
+    absent: bool,
     diagnostics: &'a mut Diagnostics,
     unknown: &'a mut Vec<Unknown>,
 }
@@ -133,6 +136,7 @@ impl<'a> Reader<'a> {
             missing: Vec::new(),
             reserved: Vec::new(),
             hint: None,
+            absent: false,
             diagnostics: self.diagnostics,
             unknown: self.unknown,
         }
@@ -431,6 +435,12 @@ impl Visitor for Reader<'_> {
     fn section(&mut self, param: &Param, present: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor)) {
         let entry = self.entry(param);
         match entry.map(|e| &e.item.value) {
+            // The defaults of an optional table hold without it; nothing is missing from it, so it is not finished.
+            None if !param.required && !self.absent => {
+                let empty = Table::default();
+                let mut inner = Reader { absent: true, ..self.enter(&empty, self.place) };
+                body(&mut inner);
+            }
             None | Some(Value::Refused) => {}
             Some(Value::Table(table)) => {
                 let place = entry.map_or(self.place, |e| e.key_span);

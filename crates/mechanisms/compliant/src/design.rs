@@ -186,8 +186,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         yield_pa: si(spec.material.yield_stress.as_ref()),
         density_kg_per_m3: si(spec.material.density.as_ref()),
         theory: theory_of(spec),
-        // `[model]` may be absent as a whole: then the defaults of its description hold.
-        accuracy: si(spec.model.accuracy.as_ref()).unwrap_or(1e-8),
+        accuracy: si(spec.model.accuracy.as_ref())?,
         requirements,
         units,
         material_origin,
@@ -278,7 +277,7 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
         force: si(requirements.force.band.as_ref()).map(|band| (band, si(requirements.force.nominal.as_ref()))),
         travel_m: si(requirements.travel.as_ref()),
         stress,
-        stiffness_min: si(requirements.stiffness.min.as_ref()).unwrap_or(0.0),
+        stiffness_min: si(requirements.stiffness.min.as_ref())?,
         stiffness_max: si(requirements.stiffness.max.as_ref()),
         limits,
     })
