@@ -16,7 +16,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "COMP002",
         "stress",
-        "Largest stress over all beams, both faces, and the whole travel, against the yield stress over `requirements.stress.safety_factor`, or against `requirements.stress.max`. σ = (E·w/2L)·d(ψ − η)/du (Lan, Wang & Chen 2010, eq. (5)); the geometrically exact model adds the axial stress N/A.\n\nBending stress follows the thickness w at equal deflection, force follows w³·t. So a thinner and deeper beam carries the same force with less stress: w × 0.85 and t × 1.628 is the paper's own example.\n\nNot assessed where the yield stress is not known.",
+        "Largest stress over all beams, both faces, and the whole travel, against the yield stress over `requirements.stress.safety_factor`, or against `requirements.stress.max`; without either against the yield stress itself, where it is known. σ = (E·w/2L)·d(ψ − η)/du (Lan, Wang & Chen 2010, eq. (5)); the geometrically exact model adds the axial stress N/A.\n\nBending stress follows the thickness w at equal deflection, force follows w³·t. So a thinner and deeper beam carries the same force with less stress: w × 0.85 and t × 1.628 is the paper's own example.\n\nNot assessed where the yield stress is not known.",
     ),
     code(
         "COMP003",
