@@ -132,12 +132,12 @@ impl Context<'_> {
     fn force(&self) -> Option<Check> {
         let (band, nominal) = self.requirements.force?;
         let curve = self.behaviour.curve.as_ref().filter(|_| self.behaviour.whole);
-        let window_m = self.requirements.travel_m.unwrap_or(0.0);
+        // A band without a stroke is refused when the file is read.
+        let window_m = self.requirements.travel_m?;
         let best = curve.and_then(|c| c.best_window(window_m, nominal)).filter(|(_, d)| d.is_finite());
         let units = &self.design.units;
         let stroke = format_si(window_m, &units.displacement, 4);
         let around = nominal.map_or_else(|| "around a free level".to_owned(), |f| format!("around {}", format_si(f, &units.force, 4)));
-        let over = if window_m > 0.0 { format!(" over the best {stroke}") } else { String::new() };
         let fix = best
             .zip(nominal)
             .and_then(|((_, deviation), level)| self.depth_advice(level, band, deviation))
@@ -147,7 +147,7 @@ impl Context<'_> {
         let comparison = Comparison {
             code: "COMP001",
             name: "force".to_owned(),
-            title: format!("Force deviation {around}{over}"),
+            title: format!("Force deviation {around} over the best {stroke}"),
             value: best.map(|(_, deviation)| deviation),
             limit: Some(band),
             sense: Sense::AtMost,
@@ -165,10 +165,7 @@ impl Context<'_> {
     /// What `design.depth` can do for a missed band around a nominal level: move the flattest stroke to that level.
     fn depth_advice(&self, level: f64, band: f64, deviation: f64) -> Option<String> {
         let curve = self.behaviour.curve.as_ref()?;
-        let flattest = match self.requirements.travel_m {
-            Some(window_m) => curve.best_window(window_m, None).filter(|(_, d)| d.is_finite())?.0,
-            None => curve.longest_flat(band)?,
-        };
+        let flattest = curve.best_window(self.requirements.travel_m?, None).filter(|(_, d)| d.is_finite())?.0;
         let (hi, lo) = curve.extent(flattest);
         let (middle, free) = (f64::midpoint(hi, lo), (hi - lo) / (hi + lo));
         let rest =
@@ -190,8 +187,8 @@ impl Context<'_> {
     fn travel(&self) -> Option<Check> {
         let wanted = self.requirements.travel_m?;
         let usable = self.measured.usable.map(|i| i.length());
-        // No interval at all is a stroke of zero, if the path was computed and a band was asked for.
-        let value = if self.behaviour.whole && self.requirements.force.is_some() { Some(usable.unwrap_or(0.0)) } else { None };
+        // No interval at all is a stroke of zero, if the path was computed.
+        let value = self.behaviour.whole.then_some(usable.unwrap_or(0.0));
         let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
         let comparison = Comparison {
             code: "COMP003",
