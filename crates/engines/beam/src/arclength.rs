@@ -55,37 +55,40 @@ impl Border {
     /// Factors the system that was just evaluated together with the row.
     fn factor(&mut self, system: &System) -> Result<(), Singular> {
         let model = system.model;
-        let (m, rows) = (model.unknowns, system.solved());
-        let size = rows + 1;
+        let (m, rows) = (model.unknowns, model.solved);
+        // The last column is the driven unknown, or the load.
+        let (size, columns) = (rows + 1, rows + usize::from(model.kinematic));
         self.matrix.clear();
         self.matrix.resize(size * size, 0.0);
         for row in 0..rows {
-            self.matrix[row * size..row * size + m].copy_from_slice(&system.matrix[row * m..(row + 1) * m]);
+            self.matrix[row * size..row * size + columns].copy_from_slice(&system.matrix[row * m..row * m + columns]);
         }
         let last = &mut self.matrix[rows * size..];
-        last[..m].copy_from_slice(&self.row[..m]);
+        last[..columns].copy_from_slice(&self.row[..columns]);
         self.constant = 0.0;
         let bubbles = system.resolution.basis.bubbles;
         for (index, beam) in model.beams.iter().enumerate() {
             let first = m + index * bubbles;
             let sum = system.elements[index].project(&self.row[first..first + bubbles]);
             for (place, value) in [beam.ends[0], beam.ends[1], Some(beam.force), Some(beam.force + 1)].iter().zip(sum) {
-                if let Some(place) = place {
-                    last[*place] -= value;
+                if let Some(place) = place.filter(|place| *place < columns) {
+                    last[place] -= value;
                 }
             }
             self.constant += sum[4];
         }
         if !model.kinematic {
-            last[m] = self.row_control;
-            self.matrix[(m - 1) * size + m] = -model.projection;
+            last[rows] = self.row_control;
+            for (place, factor) in model.pull.iter().filter(|(place, _)| *place < rows) {
+                self.matrix[place * size + rows] = -factor;
+            }
         }
         self.lu.factor(size, size, &self.matrix)
     }
 
     /// Newton step into [`System::change`]; returns that of the control.
     fn newton_step(&mut self, system: &mut System) -> f64 {
-        let rows = system.solved();
+        let rows = system.model.solved;
         self.rhs.clear();
         self.rhs.extend(system.residual[..rows].iter().map(|r| -r));
         self.rhs.push(self.constant);
@@ -95,17 +98,19 @@ impl Border {
     /// Direction of the path into [`System::change`], of length 1 along the row; returns its component along the control.
     fn tangent(&mut self, system: &mut System) -> f64 {
         self.rhs.clear();
-        self.rhs.resize(system.solved(), 0.0);
+        self.rhs.resize(system.model.solved, 0.0);
         self.rhs.push(1.0);
         self.solve(system, 0.0)
     }
 
     fn solve(&mut self, system: &mut System, residual: f64) -> f64 {
-        let m = system.model.unknowns;
+        let (rows, kinematic) = (system.model.solved, system.model.kinematic);
         self.lu.solve(&mut self.rhs);
-        system.change[..m].copy_from_slice(&self.rhs[..m]);
+        let moved = rows + usize::from(kinematic);
+        system.change.fill(0.0);
+        system.change[..moved].copy_from_slice(&self.rhs[..moved]);
         system.expand(residual);
-        if system.model.kinematic { system.model.projection * self.rhs[m - 1] } else { self.rhs[m] }
+        if kinematic { system.model.projection * self.rhs[rows] } else { self.rhs[rows] }
     }
 }
 
@@ -191,7 +196,7 @@ impl Stepper<'_> {
             }
             control += change;
             if size <= CONVERGED || (iteration >= 2 && size <= ROUNDING && size > 0.25 * last) {
-                self.reaction = self.system.reaction();
+                self.remember_holding();
                 return Ok(control);
             }
             last = size;
@@ -302,10 +307,7 @@ impl Stepper<'_> {
         let s = roots::root(|s| control_between(a, b, s) - control, 0.0, 1.0, 1e-15).ok()?;
         let way = a.way + s * (b.way - a.way);
         self.place_between(a, b, way);
-        if self.system.model.kinematic {
-            let driven = self.system.model.driven();
-            self.predicted[driven] = control / self.system.model.projection;
-        }
+        self.drive_to(control);
         self.state.copy_from_slice(&self.predicted);
         let rate: Vec<f64> = a.rate.iter().zip(&b.rate).map(|(a, b)| a + s * (b - a)).collect();
         self.aim(border, &rate, a.control_rate + s * (b.control_rate - a.control_rate));

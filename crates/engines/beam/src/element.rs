@@ -27,6 +27,8 @@ use forcewright_base::{
     quadrature::{GaussLegendre, legendre_values},
 };
 
+use crate::state::PieceInfo;
+
 /// Tables of the trial functions for one polynomial degree.
 #[derive(Debug)]
 pub(crate) struct Basis {
@@ -61,6 +63,19 @@ impl Basis {
         self.rule.nodes().len()
     }
 
+    /// φ' at a point; `slopes` receives those of the bubbles, 1 − u and u.
+    pub(crate) fn slope(&self, point: usize, at: &Coordinates, slopes: &mut [f64]) -> f64 {
+        let legendre = &self.legendre[point * self.points()..];
+        let mut sum = at.ends[1] - at.ends[0];
+        for (k, target) in slopes[..self.bubbles].iter_mut().enumerate() {
+            *target = root_of(k + 2) * legendre[k + 1];
+            sum += at.bubbles[k] * *target;
+        }
+        slopes[self.bubbles] = -1.0;
+        slopes[self.bubbles + 1] = 1.0;
+        sum
+    }
+
     /// Per point: its weight, and the bubbles, 1 − u and u there.
     pub(crate) fn rows(&self) -> impl Iterator<Item = (f64, &[f64])> {
         self.rule.weights().iter().copied().zip(self.values.chunks_exact(self.bubbles + 2))
@@ -91,14 +106,31 @@ pub(crate) struct RestShape {
     pub(crate) eta: Vec<f64>,
     pub(crate) cos: Vec<f64>,
     pub(crate) sin: Vec<f64>,
+    /// Thickness relative to that of the constants; empty if it is constant.
+    pub(crate) thickness: Vec<f64>,
 }
 
 impl RestShape {
-    pub(crate) fn new(basis: &Basis, angle: impl Fn(f64) -> f64) -> Self {
-        let eta: Vec<f64> = basis.rule.nodes().iter().map(|&u| angle(u)).collect();
+    pub(crate) fn new(basis: &Basis, info: &PieceInfo) -> Self {
+        let nodes = basis.rule.nodes();
+        let eta: Vec<f64> = nodes.iter().map(|&u| info.shape.angle_at(u)).collect();
         // Through the same addition as in the loaded state, so that no rotation gives the same bits.
         let turned: Vec<(f64, f64)> = eta.iter().map(|a| maths::sin_cos(a + 0.0)).collect();
-        Self { cos: turned.iter().map(|t| t.1).collect(), sin: turned.iter().map(|t| t.0).collect(), eta }
+        let relative = |[a, b]: [f64; 2]| nodes.iter().map(|u| (a + (b - a) * u) / info.section.thickness_m).collect();
+        Self {
+            cos: turned.iter().map(|t| t.1).collect(),
+            sin: turned.iter().map(|t| t.0).collect(),
+            eta,
+            thickness: info.thickness_m.map(relative).unwrap_or_default(),
+        }
+    }
+
+    /// Bending stiffness at a point relative to the constants, and 1/EA and 1/kGA at it.
+    pub(crate) fn local(&self, point: usize, c: &Constants) -> (f64, f64, f64) {
+        match self.thickness.get(point) {
+            Some(t) => (t * t * t, c.axial / t, c.shear / t),
+            None => (1.0, c.axial, c.shear),
+        }
     }
 }
 
@@ -166,7 +198,12 @@ impl Element {
     /// [`Singular`] if the bubbles alone are at a buckling load to working precision.
     pub(crate) fn linearise(&mut self, basis: &Basis, rest: &RestShape, c: &Constants, at: Coordinates) -> Result<(), Singular> {
         self.integrate(basis, rest, c, at);
-        self.add_bending(c, at);
+        if rest.thickness.is_empty() {
+            self.add_bending(c, at);
+        } else {
+            self.add_varying_bending(basis, rest, c, at);
+        }
+        self.complete(basis.bubbles);
         self.condense(basis.bubbles, c)
     }
 
@@ -177,9 +214,10 @@ impl Element {
         self.residual.fill(0.0);
         self.coupling.fill(0.0);
         let [h, v] = at.force;
-        let softness = c.axial - c.shear;
         let (mut gap, mut compliance) = ([0.0; 2], [0.0; 3]);
         for (point, (weight, row)) in basis.rows().enumerate() {
+            let (_, soft_axial, soft_shear) = rest.local(point, c);
+            let softness = soft_axial - soft_shear;
             let (sin, cos) = maths::sin_cos(rest.eta[point] + at.rotation(row));
             let (axial, across) = (h * cos + v * sin, v * cos - h * sin);
             let load = across + softness * axial * across;
@@ -197,11 +235,11 @@ impl Element {
                     *target += factor * other;
                 }
             }
-            gap[0] -= w * (cos - rest.cos[point] + c.axial * axial * cos - c.shear * across * sin);
-            gap[1] -= w * (sin - rest.sin[point] + c.axial * axial * sin + c.shear * across * cos);
-            compliance[0] -= w * (c.axial * cos * cos + c.shear * sin * sin);
+            gap[0] -= w * (cos - rest.cos[point] + soft_axial * axial * cos - soft_shear * across * sin);
+            gap[1] -= w * (sin - rest.sin[point] + soft_axial * axial * sin + soft_shear * across * cos);
+            compliance[0] -= w * (soft_axial * cos * cos + soft_shear * sin * sin);
             compliance[1] -= w * softness * sin * cos;
-            compliance[2] -= w * (c.axial * sin * sin + c.shear * cos * cos);
+            compliance[2] -= w * (soft_axial * sin * sin + soft_shear * cos * cos);
         }
         self.gradient = [0.0, 0.0, gap[0], gap[1]];
         self.matrix = [[0.0; 4]; 4];
@@ -225,6 +263,27 @@ impl Element {
         let moment = c.bending * (at.ends[1] - at.ends[0]);
         self.residual[a] -= moment;
         self.residual[b] += moment;
+    }
+
+    /// With a thickness that varies the slopes of the trial functions are no longer orthogonal under the stiffness.
+    fn add_varying_bending(&mut self, basis: &Basis, rest: &RestShape, c: &Constants, at: Coordinates) {
+        let n = basis.bubbles + 2;
+        let mut slopes = vec![0.0; n];
+        for (point, weight) in basis.rule.weights().iter().enumerate() {
+            let slope = basis.slope(point, &at, &mut slopes);
+            let stiffness = c.bending * rest.local(point, c).0 * weight;
+            for i in 0..n {
+                self.residual[i] += stiffness * slope * slopes[i];
+                for j in 0..=i {
+                    self.hessian[i * n + j] += stiffness * slopes[i] * slopes[j];
+                }
+            }
+        }
+    }
+
+    /// The upper triangle from the lower one.
+    fn complete(&mut self, bubbles: usize) {
+        let n = bubbles + 2;
         for row in 0..n {
             for column in row + 1..n {
                 self.hessian[row * n + column] = self.hessian[column * n + row];
@@ -378,27 +437,39 @@ impl Element {
 ///
 /// The moment follows from its own differential equation −M' = L q with q interpolated at the quadrature points, instead of from
 /// φ': this returns the bubbles solved for, adds those of degree `P + 1 … points + 1`, and makes the end moments those that
-/// balance the nodes. `modes` receives as many entries as there are points.
+/// balance the nodes. `modes` receives as many entries as there are points. With a thickness that varies φ' is not the moment but for a
+/// factor, and the bubbles are returned as they are, filled up with zeros.
 pub(crate) fn recover(basis: &Basis, rest: &RestShape, c: &Constants, at: Coordinates, modes: &mut Vec<f64>) -> f64 {
     let points = basis.points();
     let mut coefficients = vec![0.0; points + 2];
-    let softness = c.axial - c.shear;
-    let mut soft_energy = 0.0;
+    let mut slopes = vec![0.0; basis.bubbles + 2];
+    let (mut soft_energy, mut varying) = (0.0, 0.0);
     for (point, ((weight, row), p)) in basis.rows().zip(basis.legendre.chunks_exact(points)).enumerate() {
+        let (stiffness, soft_axial, soft_shear) = rest.local(point, c);
         let (sin, cos) = maths::sin_cos(rest.eta[point] + at.rotation(row));
         let (axial, across) = (at.force[0] * cos + at.force[1] * sin, at.force[1] * cos - at.force[0] * sin);
-        let load = weight * (across + softness * axial * across);
+        let load = weight * (across + (soft_axial - soft_shear) * axial * across);
         // The last two stay zero: they are beyond the interpolation.
         for (target, value) in coefficients.iter_mut().zip(p) {
             *target += load * value;
         }
-        soft_energy += weight * (c.axial * axial * axial + c.shear * across * across);
+        soft_energy += weight * (soft_axial * axial * axial + soft_shear * across * across);
+        if !rest.thickness.is_empty() {
+            let slope = basis.slope(point, &at, &mut slopes);
+            varying += weight * stiffness * slope * slope;
+        }
     }
-    let ratio = 0.5 * c.length / c.bending;
     modes.clear();
-    // Σ w q P_j is q_j/(2j+1), which is just what the recurrence ∫P_j = (P_{j+1} − P_{j−1})/(2(2j+1)) needs.
-    modes.extend((2..points + 2).map(|k| ratio * (coefficients[k] - coefficients[k - 2]) / root_of(k)));
     let turn = at.ends[1] - at.ends[0];
-    let bending: f64 = turn * turn + at.bubbles.iter().map(|a| a * a).sum::<f64>();
+    let bending = if rest.thickness.is_empty() {
+        let ratio = 0.5 * c.length / c.bending;
+        // Σ w q P_j is q_j/(2j+1), which is just what the recurrence ∫P_j = (P_{j+1} − P_{j−1})/(2(2j+1)) needs.
+        modes.extend((2..points + 2).map(|k| ratio * (coefficients[k] - coefficients[k - 2]) / root_of(k)));
+        turn * turn + at.bubbles.iter().map(|a| a * a).sum::<f64>()
+    } else {
+        modes.extend_from_slice(at.bubbles);
+        modes.resize(points, 0.0);
+        varying
+    };
     0.5 * (c.bending * bending + c.length * soft_energy)
 }

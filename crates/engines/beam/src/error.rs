@@ -70,6 +70,40 @@ pub enum NetworkError {
         /// Distance between the end of the shape and the node, m.
         gap_m: f64,
     },
+    /// The places at which the thickness of a beam is given do not ascend from 0 to 1, or are too many.
+    Profile {
+        /// The beam.
+        beam: usize,
+    },
+    /// An arm is not finite.
+    Arm {
+        /// The beam.
+        beam: usize,
+    },
+    /// The rigid zones at both ends of a beam leave too little of it to bend.
+    AllRigid {
+        /// The beam.
+        beam: usize,
+        /// Sum of the zones, m.
+        rigid_m: f64,
+    },
+    /// More load stages than [`crate::Network::MOST_STAGES`].
+    TooManyStages {
+        /// How many there are.
+        count: usize,
+    },
+    /// The end of a load stage is not a finite number.
+    StageEnd {
+        /// The stage.
+        stage: usize,
+    },
+    /// Two loads prescribe the same motion, or two that are not perpendicular.
+    DrivenTwice {
+        /// The node.
+        node: usize,
+        /// The later of the two, counted from 0; the drive counts after all stages.
+        stage: usize,
+    },
     /// A part of the network can move without deforming.
     Mechanism {
         /// A node of that part.
@@ -110,6 +144,26 @@ impl fmt::Display for NetworkError {
             Self::DoesNotClose { beam, gap_m } => write!(
                 f,
                 "the shape of beam {beam} ends {gap_m:.3e} m away from its node; take the node from the shape, or the shape from the chord"
+            ),
+            Self::Profile { beam } => write!(
+                f,
+                "beam {beam}: places of the thickness must ascend from 0 to 1, at most {} of them",
+                crate::Network::MOST_PLACES
+            ),
+            Self::Arm { beam } => write!(f, "an arm of beam {beam} is not a finite number"),
+            Self::AllRigid { beam, rigid_m } => write!(
+                f,
+                "beam {beam} is inside its joints over {rigid_m:.3e} m and has nothing left to bend; \
+                 lengthen or thin it, spread the beams that meet there, or let joints be points"
+            ),
+            Self::TooManyStages { count } => {
+                write!(f, "{count} load stages come before the drive; at most {} are supported", crate::Network::MOST_STAGES)
+            }
+            Self::StageEnd { stage } => write!(f, "the end of load stage {stage} is not a finite number"),
+            Self::DrivenTwice { node, stage } => write!(
+                f,
+                "load {stage} prescribes a motion of node {node} that an earlier load prescribes already; \
+                 two displacements of one node must be perpendicular"
             ),
             Self::Mechanism { node } => {
                 write!(f, "the part around node {node} can move without deforming; support it, or make a hinge rigid")

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use crate::{
     arclength::{ArcKnot, Border},
-    assembly::{Model, Resolution},
+    assembly::Resolution,
     counters::Counters,
     error::Status,
+    model::Model,
     network::Settings,
-    path::{DEGREES, same_end},
+    path::{Approach, DEGREES, same_end},
     stability::{Bifurcation, Fold, Jump},
     state::Point,
     stepping::{Interrupted, Knot, LARGEST_TURN, SMALLEST_STEP, Stepper, next_step},
@@ -110,7 +111,11 @@ fn resolved_course(
         if !is_stuck(&start.status) || cut_short(&course.status) || estimate <= settings.accuracy {
             break;
         }
-        let finer = Arc::new(Resolution::new(model, degree));
+        let Approach { resolution: finer, failed, .. } = Approach::new(model, degree, budget, counters, &mut |_| true);
+        if let Some(status) = failed {
+            course.status = status;
+            break;
+        }
         let run = Stepper::new(model, &finer, budget, counters, &mut |_| true).run(&[course.turned_at]);
         let again = Start { model, resolution: &finer, knots: &run.knots, status: run.status };
         let next = Stepper::new(model, &finer, budget, counters, progress).walk(&mut border, &again, goal);

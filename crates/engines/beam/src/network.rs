@@ -11,11 +11,23 @@ pub struct Network {
     pub nodes: Vec<Node>,
     /// The beams.
     pub beams: Vec<Beam>,
+    /// What was done before the path begins, in order. Every stage is held at its end: a displacement or rotation stays where it is, a
+    /// force or moment stays as large as it is.
+    pub before: Vec<Stage>,
     /// The one control of the path.
     pub drive: Drive,
 }
 
-/// A place where beams end.
+/// A load stage that is over when the path begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stage {
+    /// What is prescribed.
+    pub drive: Drive,
+    /// How far, of either sign: m or rad from where the stage before left the node, or N or N·m.
+    pub to: f64,
+}
+
+/// A place where beams end: a point, or with [`Beam::arms_m`] a rigid body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
     /// Position at rest, m.
@@ -33,6 +45,8 @@ pub enum Support {
     Clamped,
     /// The position is held, the rotation is free.
     Pinned,
+    /// The rotation is held, the position is free: a stage on parallel guides for both directions.
+    Parallel,
     /// It moves along a straight guide.
     Slider {
         /// Direction of the guide; any length but zero.
@@ -40,6 +54,13 @@ pub enum Support {
         /// Whether it may turn.
         rotation: Rotation,
     },
+}
+
+impl Support {
+    /// Whether the node keeps its angle.
+    pub fn holds_rotation(&self) -> bool {
+        matches!(self, Self::Clamped | Self::Parallel | Self::Slider { rotation: Rotation::Fixed, .. })
+    }
 }
 
 /// Whether a slider may turn.
@@ -51,14 +72,14 @@ pub enum Rotation {
     Free,
 }
 
-/// One beam with a constant section.
+/// One beam.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Beam {
     /// Index of the node where u = 0.
     pub start: usize,
     /// Index of the node where u = 1.
     pub end: usize,
-    /// Shape at rest; its chord must lead from the start node to the end node.
+    /// Shape at rest; its chord must lead from the start node to the end node, arms included.
     pub shape: Shape,
     /// Cross-section and material.
     pub section: Section,
@@ -66,6 +87,43 @@ pub struct Beam {
     pub start_joint: Joint,
     /// How it is joined to its end node.
     pub end_joint: Joint,
+    /// From the start node to the start of the beam and from the end node to its end, at rest, m: arms that turn with the node, which
+    /// is then a rigid body. Zero by default.
+    pub arms_m: [[f64; 2]; 2],
+    /// Thickness in the plane at places along the beam, (u, m), linear between them, in place of [`Section::thickness_m`]; the first
+    /// at u = 0, the last at u = 1. Empty for a constant thickness.
+    pub profile: Vec<[f64; 2]>,
+}
+
+impl Beam {
+    /// A beam of constant section, joined rigidly at both ends without arms.
+    pub fn new(start: usize, end: usize, shape: Shape, section: Section) -> Self {
+        Self {
+            start,
+            end,
+            shape,
+            section,
+            start_joint: Joint::Rigid,
+            end_joint: Joint::Rigid,
+            arms_m: [[0.0; 2]; 2],
+            profile: Vec::new(),
+        }
+    }
+
+    /// Thickness in the plane at u in [0, 1], m.
+    pub fn thickness_at(&self, u: f64) -> f64 {
+        let after = self.profile.partition_point(|p| p[0] <= u);
+        match (self.profile.get(after.wrapping_sub(1)), self.profile.get(after)) {
+            (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (u - a[0]) / (b[0] - a[0]),
+            (Some(only), None) | (None, Some(only)) => only[1],
+            (None, None) => self.section.thickness_m,
+        }
+    }
+
+    /// The section at u in [0, 1].
+    pub fn section_at(&self, u: f64) -> Section {
+        Section { thickness_m: self.thickness_at(u), ..self.section }
+    }
 }
 
 /// How a beam is joined to a node.
@@ -145,6 +203,19 @@ pub struct Settings {
     pub iteration_limit: u64,
     /// What happens at a limit point of the control. Default [`Follow::StopAtLimit`].
     pub follow: Follow,
+    /// How beams of finite thickness meet. Default [`Joints::Point`].
+    pub joints: Joints,
+}
+
+/// How beams of finite thickness meet at a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Joints {
+    /// In a point: every beam bends over its whole length.
+    #[default]
+    Point,
+    /// In a block: each beam is rigid as far as it lies inside another one, up to the corner of their inner faces. Only where beams
+    /// are joined rigidly to the node itself, without [`Beam::arms_m`].
+    Overlap,
 }
 
 /// What happens where the control cannot grow any further along the path.
@@ -161,7 +232,7 @@ pub enum Follow {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { theory: Theory::default(), accuracy: 1e-8, iteration_limit: 50_000, follow: Follow::default() }
+        Self { theory: Theory::default(), accuracy: 1e-8, iteration_limit: 50_000, follow: Follow::default(), joints: Joints::default() }
     }
 }
 
@@ -180,8 +251,24 @@ pub(crate) fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
 impl Network {
     /// Largest number of nodes, and of beams.
     pub const LARGEST: usize = 64;
+    /// Largest ratio of thicknesses within one beam.
+    pub const LARGEST_TAPER: f64 = 100.0;
+    /// Largest number of load stages before the drive.
+    pub const MOST_STAGES: usize = 16;
+    /// Largest number of places at which the thickness of a beam is given.
+    pub const MOST_PLACES: usize = 32;
     /// Largest distance between the end of a shape and its node, relative to the length of the beam.
     pub const LARGEST_GAP: f64 = 1e-6;
+
+    /// A network with one load.
+    pub fn new(nodes: Vec<Node>, beams: Vec<Beam>, drive: Drive) -> Self {
+        Self { nodes, beams, before: Vec::new(), drive }
+    }
+
+    /// All loads in order, the drive last.
+    pub(crate) fn drives(&self) -> impl DoubleEndedIterator<Item = &Drive> {
+        self.before.iter().map(|s| &s.drive).chain(std::iter::once(&self.drive))
+    }
 
     /// Checks everything that can be checked without solving.
     ///
@@ -213,7 +300,7 @@ impl Network {
                 return Err(NetworkError::LooseNode { node });
             }
         }
-        self.check_drive()?;
+        self.check_drives()?;
         self.check_rigid_motion()
     }
 
@@ -227,10 +314,12 @@ impl Network {
         if b.start == b.end {
             return Err(NetworkError::BeamOnOneNode { beam });
         }
-        if let Some((what, value)) = b.section.fault() {
-            return Err(NetworkError::Section { beam, what, value });
+        self.check_profile(beam)?;
+        if !b.arms_m.iter().flatten().all(|v| v.is_finite()) {
+            return Err(NetworkError::Arm { beam });
         }
-        let (chord, from, to) = (b.shape.chord_m(), self.nodes[b.start].position_m, self.nodes[b.end].position_m);
+        let attached = |node: usize, arm: [f64; 2]| [0, 1].map(|i| self.nodes[node].position_m[i] + arm[i]);
+        let (chord, from, to) = (b.shape.chord_m(), attached(b.start, b.arms_m[0]), attached(b.end, b.arms_m[1]));
         let gap_m = maths::hypot(to[0] - from[0] - chord[0], to[1] - from[1] - chord[1]);
         // Positions far from the origin carry their own rounding.
         let rounding = 8.0 * f64::EPSILON * from.iter().chain(&to).fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -240,24 +329,76 @@ impl Network {
         Err(NetworkError::DoesNotClose { beam, gap_m })
     }
 
-    /// Whether any beam end turns with the node.
-    pub(crate) fn turns_beams(&self, node: usize) -> bool {
-        let rigid = |j: Joint| j == Joint::Rigid;
-        self.beams.iter().any(|b| (b.start == node && rigid(b.start_joint)) || (b.end == node && rigid(b.end_joint)))
+    /// Sections at all places where the thickness is given, and their order.
+    fn check_profile(&self, beam: usize) -> Result<(), NetworkError> {
+        let b = &self.beams[beam];
+        let wrong = |what, value| Err(NetworkError::Section { beam, what, value });
+        let places = b.profile.iter().map(|p| p[0]);
+        if !b.profile.is_empty() {
+            let ascending = b.profile.windows(2).all(|p| p[0][0] < p[1][0]);
+            let whole = places.clone().next() == Some(0.0) && places.clone().last() == Some(1.0);
+            if !ascending || !whole || b.profile.len() > Self::MOST_PLACES {
+                return Err(NetworkError::Profile { beam });
+            }
+        }
+        let thicknesses = b.profile.iter().map(|p| p[1]).chain(b.profile.is_empty().then_some(b.section.thickness_m));
+        for thickness_m in thicknesses {
+            if let Some((what, value)) = (Section { thickness_m, ..b.section }).fault() {
+                return wrong(what, value);
+            }
+        }
+        // The general path resolves such tapers; beyond, bending is all at the thin end.
+        let range = b.profile.iter().fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], p| [low.min(p[1]), high.max(p[1])]);
+        if !b.profile.is_empty() && range[1] > Self::LARGEST_TAPER * range[0] {
+            return wrong("largest thickness over smallest", range[1] / range[0]);
+        }
+        Ok(())
     }
 
-    fn check_drive(&self) -> Result<(), NetworkError> {
-        let node = self.drive.node();
+    /// Whether anything turns with the node: a beam end, or a hinge on an arm.
+    pub(crate) fn turns_beams(&self, node: usize) -> bool {
+        let turns = |at: usize, joint: Joint, arm: [f64; 2]| at == node && (joint == Joint::Rigid || arm != [0.0; 2]);
+        self.beams.iter().any(|b| turns(b.start, b.start_joint, b.arms_m[0]) || turns(b.end, b.end_joint, b.arms_m[1]))
+    }
+
+    fn check_drives(&self) -> Result<(), NetworkError> {
+        if self.before.len() > Self::MOST_STAGES {
+            return Err(NetworkError::TooManyStages { count: self.before.len() });
+        }
+        for (stage, s) in self.before.iter().enumerate() {
+            if !s.to.is_finite() {
+                return Err(NetworkError::StageEnd { stage });
+            }
+        }
+        for (stage, drive) in self.drives().enumerate() {
+            self.check_drive(drive)?;
+            let clash = |earlier: &Drive| match (earlier, drive) {
+                (Drive::Rotation { node: a }, Drive::Rotation { node: b }) => a == b,
+                (Drive::Displacement { node: a, direction: d }, Drive::Displacement { node: b, direction: e }) => {
+                    let across = unit(*d).zip(unit(*e)).is_some_and(|(d, e)| (d[0] * e[0] + d[1] * e[1]).abs() < 1e-12);
+                    a == b && !(across && matches!(self.nodes[*a].support, Support::Free | Support::Parallel))
+                }
+                _ => false,
+            };
+            if self.drives().take(stage).any(clash) {
+                return Err(NetworkError::DrivenTwice { node: drive.node(), stage });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_drive(&self, drive: &Drive) -> Result<(), NetworkError> {
+        let node = drive.node();
         let Some(driven) = self.nodes.get(node) else {
             return Err(NetworkError::DriveOutOfRange { node });
         };
-        let allowed = match self.drive {
+        let allowed = match *drive {
             Drive::Displacement { direction, .. } | Drive::Force { direction, .. } => {
                 let Some(d) = unit(direction) else {
                     return Err(NetworkError::Direction { node });
                 };
                 match driven.support {
-                    Support::Free => true,
+                    Support::Free | Support::Parallel => true,
                     Support::Clamped | Support::Pinned => false,
                     Support::Slider { direction, .. } => {
                         // Below this the node would move 10⁸ times as far as the drive.
@@ -265,10 +406,7 @@ impl Network {
                     }
                 }
             }
-            Drive::Rotation { .. } | Drive::Moment { .. } => {
-                let held = matches!(driven.support, Support::Clamped | Support::Slider { rotation: Rotation::Fixed, .. });
-                !held && self.turns_beams(node)
-            }
+            Drive::Rotation { .. } | Drive::Moment { .. } => !driven.support.holds_rotation() && self.turns_beams(node),
         };
         if allowed { Ok(()) } else { Err(NetworkError::DriveBlocked { node }) }
     }
@@ -301,6 +439,7 @@ impl Network {
             let along = |d: [f64; 2]| [d[0], d[1], x * d[1] - y * d[0]];
             match n.support {
                 Support::Free => {}
+                Support::Parallel => rows.push([0.0, 0.0, 1.0]),
                 Support::Clamped => return 0,
                 Support::Pinned => rows.extend([along([1.0, 0.0]), along([0.0, 1.0])]),
                 Support::Slider { direction, rotation } => {
@@ -311,11 +450,12 @@ impl Network {
                     }
                 }
             }
-            match self.drive {
-                Drive::Displacement { node: driven, direction } if driven == node => {
+            // The first load alone holds what the stages after it do not hold yet.
+            match self.drives().next() {
+                Some(&Drive::Displacement { node: driven, direction }) if driven == node => {
                     rows.push(along(unit(direction).unwrap_or([1.0, 0.0])));
                 }
-                Drive::Rotation { node: driven } if driven == node => rows.push([0.0, 0.0, 1.0]),
+                Some(&Drive::Rotation { node: driven }) if driven == node => rows.push([0.0, 0.0, 1.0]),
                 _ => {}
             }
         }

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use crate::{
-    assembly::{Model, Resolution},
+    assembly::Resolution,
     counters::Counters,
     error::{NetworkError, PathError, Status},
     follow::{Followed, Start, bifurcations, follow},
-    network::{Follow, Network, Settings},
+    model::Model,
+    network::{Follow, Joints, Network, Settings},
+    overlap::Zones,
     stability::{Bifurcation, Fold, Jump},
     state::Point,
     stepping::{Knot, Run, Stepper, interpolate},
@@ -33,6 +35,9 @@ const COMPARED: usize = 12;
 /// An equilibrium path from rest.
 #[derive(Debug, Clone)]
 pub struct Path {
+    /// The ends of the load stages before the drive that were reached, in order; all of them unless [`Path::status`] is about a stage:
+    /// then it is about the first that is missing here, and there are no points.
+    pub before: Vec<Point>,
     /// The stations reached, in order.
     pub points: Vec<Point>,
     /// How the path ended.
@@ -60,6 +65,7 @@ pub struct Path {
     /// Where stability changes without a limit point, in path order, with and without [`Follow::ToEnd`].
     pub bifurcations: Vec<Bifurcation>,
     model: Arc<Model>,
+    zones: Arc<Zones>,
     resolution: Arc<Resolution>,
     knots: Arc<Vec<Knot>>,
 }
@@ -79,24 +85,15 @@ pub struct Path {
 /// [`NetworkError`] if the network, the stations or the settings make no sense.
 ///
 /// ```
-/// use forcewright_beam::{Beam, Drive, Joint, Network, Node, Section, Settings, Shape, Support, Theory, trace};
+/// use forcewright_beam::{Beam, Drive, Network, Node, Section, Settings, Shape, Support, Theory, trace};
 /// // A cantilever, 0.1 m long, bent to a half circle by a moment of π EI/L.
 /// let section = Section { young_pa: 2e9, thickness_m: 1e-3, depth_m: 1e-2, poisson: None };
-/// let network = Network {
-///     nodes: vec![
-///         Node { position_m: [0.0, 0.0], support: Support::Clamped },
-///         Node { position_m: [0.1, 0.0], support: Support::Free },
-///     ],
-///     beams: vec![Beam {
-///         start: 0,
-///         end: 1,
-///         shape: Shape::new(vec![0.0], 0.1)?,
-///         section,
-///         start_joint: Joint::Rigid,
-///         end_joint: Joint::Rigid,
-///     }],
-///     drive: Drive::Rotation { node: 1 },
-/// };
+/// let nodes = vec![
+///     Node { position_m: [0.0, 0.0], support: Support::Clamped },
+///     Node { position_m: [0.1, 0.0], support: Support::Free },
+/// ];
+/// let beams = vec![Beam::new(0, 1, Shape::new(vec![0.0], 0.1)?, section)];
+/// let network = Network::new(nodes, beams, Drive::Rotation { node: 1 });
 /// let settings = Settings { theory: Theory::Inextensible, ..Settings::default() };
 /// let path = trace(&network, &[std::f64::consts::PI], &settings, &mut |_| true)?;
 /// assert!(path.status.is_complete());
@@ -118,7 +115,11 @@ pub fn trace(
         return Err(NetworkError::Accuracy { accuracy });
     }
     check_stations(stations)?;
-    let model = Arc::new(Model::new(network, settings.theory));
+    let zones = match settings.joints {
+        Joints::Point => Zones::none(network),
+        Joints::Overlap => Zones::of(network)?,
+    };
+    let model = Arc::new(Model::with_zones(network, settings.theory, &zones));
     let degrees = &DEGREES[first_degree(accuracy)..];
     let sample = thinned(stations);
     let mut counters = Counters::default();
@@ -127,12 +128,16 @@ pub fn trace(
     let mut level = 0;
     let natural = if settings.follow == Follow::ToEnd { 0.5 } else { 1.0 };
     loop {
-        let resolution = Arc::new(Resolution::new(&model, degrees[level]));
         // Half of what is left for each level: the number of levels is not known beforehand.
         let (done, share) = (1.0 - halves(level), halves(level + 1));
         let mut part = |fraction: f64| progress(natural * (done + share * fraction));
         let visited = if level == 0 { &sample } else { stations };
-        let run = Stepper::new(&model, &resolution, settings.iteration_limit, &mut counters, &mut part).run(visited);
+        let approach = Approach::new(&model, degrees[level], settings.iteration_limit, &mut counters, &mut part);
+        let Approach { resolution, before, failed } = approach;
+        let run = match failed {
+            Some(status) => Run { points: Vec::new(), knots: Vec::new(), status },
+            None => Stepper::new(&model, &resolution, settings.iteration_limit, &mut counters, &mut part).run(visited),
+        };
         let hopeless = matches!(
             run.status,
             Status::Stopped { .. } | Status::IterationLimit { .. } | Status::OverConstrained { .. } | Status::Mechanism { .. }
@@ -146,12 +151,48 @@ pub fn trace(
         level += 1;
         if hopeless || resolved || level == degrees.len() {
             let mut path = finish(model, (run, resolution), coarser, error_estimate, accuracy);
+            (path.before, path.zones) = (before, Arc::new(zones));
             let mut rest = |fraction: f64| progress(0.5 + 0.5 * fraction);
             path.finish_whole(stations, settings, &mut counters, &mut rest);
             path.counters = counters;
             return Ok(path);
         }
         coarser = Some((run, resolution));
+    }
+}
+
+/// The loads before the drive, at one resolution.
+pub(crate) struct Approach {
+    /// With the state in which the last load begins.
+    pub(crate) resolution: Arc<Resolution>,
+    /// The ends of the loads that were reached.
+    pub(crate) before: Vec<Point>,
+    /// Why not all of them were.
+    pub(crate) failed: Option<Status>,
+}
+
+impl Approach {
+    /// Carries out the loads before that of `model`, one after the other.
+    pub(crate) fn new(model: &Model, degree: usize, budget: u64, counters: &mut Counters, progress: &mut dyn FnMut(f64) -> bool) -> Self {
+        let mut loads: Vec<&Model> = Vec::new();
+        let mut earlier = model.before.as_deref();
+        while let Some(load) = earlier {
+            loads.push(load);
+            earlier = load.before.as_deref();
+        }
+        let mut resolution = Arc::new(Resolution::new(model, degree));
+        let mut before = Vec::with_capacity(loads.len());
+        for load in loads.into_iter().rev() {
+            let mut unseen = |_: f64| progress(0.0);
+            let run = Stepper::new(load, &resolution, budget, counters, &mut unseen).run(&[load.end]);
+            let (Some(knot), Some(point)) = (run.knots.last(), run.points.into_iter().next_back()) else {
+                return Self { resolution, before, failed: Some(run.status) };
+            };
+            let next = resolution.starting_at(knot.state.clone());
+            before.push(point);
+            resolution = Arc::new(next);
+        }
+        Self { resolution, before, failed: None }
     }
 }
 
@@ -202,6 +243,7 @@ fn finish(
         _ => finest,
     };
     Path {
+        before: Vec::new(),
         points: run.points,
         status,
         error_estimate,
@@ -212,6 +254,7 @@ fn finish(
         folds: Vec::new(),
         jumps: Vec::new(),
         bifurcations: Vec::new(),
+        zones: Arc::new(Zones::default()),
         model,
         resolution,
         knots: Arc::new(run.knots),
@@ -264,6 +307,11 @@ impl Path {
     /// The equations of the path.
     pub(crate) fn equations(&self) -> (&Model, &Resolution) {
         (&self.model, &self.resolution)
+    }
+
+    /// The rigid zones of the beams.
+    pub(crate) fn zones(&self) -> &Zones {
+        &self.zones
     }
 
     /// The largest control reached, in the unit of the drive.

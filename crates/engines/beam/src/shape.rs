@@ -189,6 +189,26 @@ impl Shape {
         sums
     }
 
+    /// The part from one place to another, 0 ≤ `from` < `to` ≤ 1; the whole shape with its very numbers.
+    pub(crate) fn part(&self, [from, to]: [f64; 2]) -> Self {
+        if from == 0.0 && to == 1.0 {
+            return self.clone();
+        }
+        // η(from + (to − from) v) in powers of v: Taylor shift by synthetic division, then scaling.
+        let mut c = self.angle_rad.clone();
+        for first in 0..c.len() {
+            for k in (first..c.len() - 1).rev() {
+                c[k] += from * c[k + 1];
+            }
+        }
+        let mut scale = 1.0;
+        for value in &mut c {
+            *value *= scale;
+            scale *= to - from;
+        }
+        Self { angle_rad: c, length_m: self.length_m * (to - from) }
+    }
+
     /// The same beam run from its end to its start.
     pub fn reversed(&self) -> Self {
         // η_r(v) = η(1 − v) + π, expanded in powers of v by repeated synthetic division (Taylor shift to 1).
@@ -277,6 +297,16 @@ mod tests {
         }
         let [x, y] = s.chord_m();
         close(r.chord_m(), [-x, -y], 1e-14);
+    }
+
+    #[test]
+    fn parts_lie_on_the_whole() {
+        let s = Shape::new(vec![0.1, 0.9, -0.7, 0.4], 2.0).unwrap();
+        let part = s.part([0.2, 0.7]);
+        let (from, to) = (s.point_m(0.2), s.point_m(0.7));
+        close(part.chord_m(), [to[0] - from[0], to[1] - from[1]], 1e-15);
+        assert!((part.angle_at(0.3) - s.angle_at(0.35)).abs() < 1e-15);
+        assert_eq!(s.part([0.0, 1.0]), s);
     }
 
     #[test]

@@ -73,7 +73,7 @@ impl Stepper<'_> {
     /// those of the bubbles and those of the condensed tangent together. Each multiplier accounts for one of them.
     pub(crate) fn instability(&self) -> usize {
         let system = &self.system;
-        let condensed = inertia(system.solved(), system.model.unknowns, &system.matrix).negative;
+        let condensed = inertia(system.model.solved, system.model.unknowns, &system.matrix).negative;
         let bubbles: usize = system.elements.iter().map(crate::element::Element::negative_bubbles).sum();
         (condensed + bubbles).saturating_sub(2 * system.model.beams.len())
     }
@@ -83,9 +83,9 @@ impl Stepper<'_> {
         let model = self.system.model;
         let control = knot.control * model.control_unit();
         if model.kinematic {
-            [control, self.reaction * model.reaction_unit()]
+            [control, self.reaction() * model.reaction_unit()]
         } else {
-            [model.projection * knot.state[model.driven()] * model.displacement_unit(), control]
+            [self.driven_displacement(&knot.state) * model.displacement_unit(), control]
         }
     }
 

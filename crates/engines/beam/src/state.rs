@@ -10,7 +10,7 @@ use forcewright_base::{
 
 use crate::{
     element::root_of,
-    network::{Beam, Theory},
+    network::Theory,
     section::Section,
     shape::Shape,
 };
@@ -36,12 +36,19 @@ pub struct Point {
     pub instability: usize,
     /// On which stretch of the path: the number of limit points of the control passed before.
     pub branch: usize,
+    /// Stiffness of the driven node against small motions (x, y, rotation) in its frame, the other nodes as their supports and loads
+    /// hold them: forces (N, N, N·m) per motion (m, m, rad), symmetric; rows of a motion without meaning are 0. Its own support and the
+    /// drive are left out, so a negative eigenvalue is a direction in which the node stays only if something guides it. `None` where the
+    /// rest of the network is itself at a limit.
+    pub output_stiffness: Option<[[f64; 3]; 3]>,
     /// Strain energy, J.
     pub energy_j: f64,
     /// The nodes, in the order of the network.
     pub nodes: Vec<NodeState>,
     /// The beams, in the order of the network.
     pub beams: Vec<BeamState>,
+    /// All unknowns and bubbles.
+    pub(crate) state: Vec<f64>,
 }
 
 impl Point {
@@ -60,6 +67,10 @@ pub struct NodeState {
     pub displacement_m: [f64; 2],
     /// Rotation of the beams joined rigidly to it, rad, counter-clockwise, not reduced to one turn; 0 if every joint is a hinge.
     pub rotation_rad: f64,
+    /// Force that the outside exerts on the node, N: its support, the drive, loads of earlier stages. 0 on a free node.
+    pub force_n: [f64; 2],
+    /// Moment that the outside exerts on the node, N·m.
+    pub moment_nm: f64,
 }
 
 /// A face of a beam, seen along the direction from its start to its end.
@@ -87,27 +98,55 @@ pub struct PeakStress {
 /// Accuracy of the place of the largest stress; its value is wrong by the square of this.
 const PEAK_TOLERANCE: f64 = 2e-6;
 
-/// What does not change along a path.
+/// The line of a beam at rest.
 #[derive(Debug)]
-pub(crate) struct BeamInfo {
+pub(crate) struct BeamLine {
     pub(crate) shape: Shape,
-    section: Section,
-    theory: Theory,
-    start_m: [f64; 2],
+    /// Where it starts, m.
+    pub(crate) start_m: [f64; 2],
+    /// What lies before and beyond is rigid.
+    pub(crate) flexible: [f64; 2],
+    /// Places where the thickness is given, if it varies.
+    pub(crate) profile: Vec<[f64; 2]>,
 }
 
-impl BeamInfo {
-    pub(crate) fn new(start_m: [f64; 2], beam: &Beam, theory: Theory) -> Self {
-        Self { shape: beam.shape.clone(), section: beam.section, theory, start_m }
+/// What does not change along a path, of one piece of a beam.
+#[derive(Debug)]
+pub(crate) struct PieceInfo {
+    pub(crate) shape: Shape,
+    /// The section, at the mean thickness.
+    pub(crate) section: Section,
+    /// Thickness at both ends if it varies.
+    pub(crate) thickness_m: Option<[f64; 2]>,
+    pub(crate) theory: Theory,
+    pub(crate) start_m: [f64; 2],
+    /// Which part of the beam it is.
+    pub(crate) range: [f64; 2],
+}
+
+impl PieceInfo {
+    /// The section at v in [0, 1] along the piece.
+    pub(crate) fn section_at(&self, v: f64) -> Section {
+        match self.thickness_m {
+            Some([a, b]) => Section { thickness_m: a + (b - a) * v, ..self.section },
+            None => self.section,
+        }
     }
 
-    pub(crate) fn section(&self) -> &Section {
-        &self.section
-    }
-
-    /// Stress of the beam bent uniformly by 1 rad, Pa.
+    /// Stress of the piece bent uniformly by 1 rad, Pa.
     pub(crate) fn stress_unit_pa(&self) -> f64 {
         self.section.bending_stiffness_n_m2() / self.shape.length_m() * self.section.face_stress_per_moment_per_m3()
+    }
+
+    /// Place along the piece of a place along the beam, and back.
+    pub(crate) fn inner(&self, u: f64) -> f64 {
+        let [from, to] = self.range;
+        ((u - from) / (to - from)).clamp(0.0, 1.0)
+    }
+
+    pub(crate) fn outer(&self, v: f64) -> f64 {
+        let [from, to] = self.range;
+        from + (to - from) * v
     }
 }
 
@@ -148,95 +187,88 @@ impl Sampling {
     }
 }
 
-/// One beam in equilibrium.
+/// One beam in equilibrium. Places u in [0, 1] run along the whole beam at rest.
 #[derive(Debug, Clone)]
 pub struct BeamState {
     /// Force (H, V) of the part beyond a section on the part before it, N: constant along the beam. Its component along the beam is
     /// positive in tension; the beam pulls its start node by (H, V) and its end node by (−H, −V).
     pub force_n: [f64; 2],
-    /// Bending moment at u = 0, N·m; positive where it adds curvature to the left.
+    /// Bending moment at u = 0, N·m; positive where it adds curvature to the left. Where the start of the beam is rigid: at the end of
+    /// that part.
     pub start_moment_nm: f64,
-    /// Bending moment at u = 1, N·m.
+    /// Bending moment at u = 1, N·m, likewise.
     pub end_moment_nm: f64,
     /// Rotation of the section at u = 0, rad.
     pub start_rotation_rad: f64,
     /// Rotation of the section at u = 1, rad.
     pub end_rotation_rad: f64,
-    /// Amplitudes `a_2`, `a_3`, … of the rotation φ = `φ_A` (1 − u) + `φ_B` u + Σ `a_k` (`P_k` − `P_{k−2}`)/(2 √(2k−1)) with Legendre
-    /// polynomials of 2u − 1, rad.
-    pub modes_rad: Vec<f64>,
-    start_displacement_m: [f64; 2],
+    pieces: Vec<PieceState>,
+    line: Arc<BeamLine>,
     peak: PeakStress,
-    info: Arc<BeamInfo>,
-    series: Arc<Series>,
-}
-
-/// Raw results for [`BeamState::new`].
-pub(crate) struct Solved {
-    pub(crate) force_n: [f64; 2],
-    pub(crate) ends: [f64; 2],
-    pub(crate) modes: Vec<f64>,
-    pub(crate) start_displacement_m: [f64; 2],
 }
 
 impl BeamState {
-    pub(crate) fn new(solved: Solved, info: &Arc<BeamInfo>, sampling: &Sampling) -> Self {
-        let mut state = Self {
-            force_n: solved.force_n,
-            start_moment_nm: 0.0,
-            end_moment_nm: 0.0,
-            start_rotation_rad: solved.ends[0],
-            end_rotation_rad: solved.ends[1],
-            modes_rad: solved.modes,
-            start_displacement_m: solved.start_displacement_m,
-            peak: PeakStress { stress_pa: 0.0, u: 0.0, face: Face::Left, tension: false },
-            info: Arc::clone(info),
-            series: Arc::clone(&sampling.series),
-        };
-        state.start_moment_nm = state.moment_nm(0.0);
-        state.end_moment_nm = state.moment_nm(1.0);
-        state.peak = state.find_peak(sampling);
-        state
-    }
-
-    pub(crate) fn info(&self) -> &BeamInfo {
-        &self.info
-    }
-
-    /// Rotation φ(u) and its slope dφ/du, rad.
-    fn rotation_and_slope(&self, u: f64) -> (f64, f64) {
-        let x = 2.0 * u - 1.0;
-        let turn = self.end_rotation_rad - self.start_rotation_rad;
-        let (mut value, mut slope) = (self.start_rotation_rad + turn * u, turn);
-        let (mut before, mut here) = (1.0, x);
-        for (a, [ratio, root, half]) in self.modes_rad.iter().zip(&self.series.terms) {
-            let next = x * here + ratio * (x * here - before);
-            value += a * half * (next - before);
-            slope += a * root * here;
-            (before, here) = (here, next);
+    /// `pieces` in the order of the beam, at least one.
+    pub(crate) fn new(pieces: Vec<PieceState>, line: Arc<BeamLine>) -> Self {
+        let none = PeakStress { stress_pa: -1.0, u: 0.0, face: Face::Left, tension: false };
+        let mut peak = none;
+        for piece in &pieces {
+            if piece.peak.stress_pa > peak.stress_pa {
+                peak = PeakStress { u: piece.info.outer(piece.peak.u), ..piece.peak };
+            }
         }
-        (value, slope)
+        let (first, last) = (pieces.first(), pieces.last());
+        Self {
+            force_n: first.map_or([0.0; 2], |p| p.force_n),
+            start_moment_nm: first.map_or(0.0, |p| p.moment_nm(0.0)),
+            end_moment_nm: last.map_or(0.0, |p| p.moment_nm(1.0)),
+            start_rotation_rad: first.map_or(0.0, |p| p.ends[0]),
+            end_rotation_rad: last.map_or(0.0, |p| p.ends[1]),
+            pieces,
+            line,
+            peak,
+        }
     }
 
-    fn bending_stiffness_nm(&self) -> f64 {
-        self.info.section.bending_stiffness_n_m2() / self.info.shape.length_m()
+    pub(crate) fn pieces(&self) -> &[PieceState] {
+        &self.pieces
+    }
+
+    /// The piece at a place, its number, and the place along it. At a cut: the piece before it.
+    pub(crate) fn piece_at(&self, u: f64) -> (usize, &PieceState, f64) {
+        let index = self.pieces.partition_point(|p| p.info.range[1] < u).min(self.pieces.len() - 1);
+        let piece = &self.pieces[index];
+        (index, piece, piece.info.inner(u))
+    }
+
+    /// The part of the beam that bends, in u; what lies outside is rigid.
+    pub fn flexible(&self) -> [f64; 2] {
+        self.line.flexible
+    }
+
+    /// Thickness in the plane at u in [0, 1], m; in a rigid part that where it ends.
+    pub fn thickness_m(&self, u: f64) -> f64 {
+        let (_, piece, v) = self.piece_at(u);
+        piece.info.section_at(v).thickness_m
     }
 
     /// Rotation of the section at u in [0, 1] from rest, rad.
     pub fn rotation_rad(&self, u: f64) -> f64 {
-        self.rotation_and_slope(u).0
+        let (_, piece, v) = self.piece_at(u);
+        piece.rotation_and_slope(v).0
     }
 
     /// Deformed angle θ(u) = η(u) + φ(u), rad.
     pub fn angle_rad(&self, u: f64) -> f64 {
-        self.info.shape.angle_at(u) + self.rotation_rad(u)
+        self.line.shape.angle_at(u) + self.rotation_rad(u)
     }
 
-    /// Bending moment M(u) = EI/L dφ/du, N·m; positive where it adds curvature to the left.
+    /// Bending moment M(u) = EI/L dφ/du, N·m; positive where it adds curvature to the left. In a rigid part that where it ends.
     ///
     /// Departure COMP-1 from Lan, Wang & Chen 2010: their eq. (4) lacks the 1/L that their eq. (5) has.
     pub fn moment_nm(&self, u: f64) -> f64 {
-        self.bending_stiffness_nm() * self.rotation_and_slope(u).1
+        let (_, piece, v) = self.piece_at(u);
+        piece.moment_nm(v)
     }
 
     /// Axial force N(u), N; positive in tension.
@@ -254,15 +286,122 @@ impl BeamState {
     /// Deformed position of the axis at u in [0, 1], m, in the frame of the network.
     pub fn shape_m(&self, u: f64) -> [f64; 2] {
         let u = if u.is_nan() { 0.0 } else { u.clamp(0.0, 1.0) };
-        let section = &self.info.section;
-        let (axial, shear) = match self.info.theory {
-            Theory::Inextensible => (0.0, 0.0),
-            Theory::Reissner => (1.0 / section.axial_stiffness_n(), 1.0 / section.shear_stiffness_n()),
+        let [from, to] = self.line.flexible;
+        let (_, piece, v) = self.piece_at(u);
+        let at = piece.shape_m(v);
+        if u >= from && u <= to {
+            return at;
+        }
+        // A rigid part turns with the section where it ends.
+        let edge = if u < from { from } else { to };
+        let (here, there) = (self.line.shape.point_m(u), self.line.shape.point_m(edge));
+        let (sin, cos) = maths::sin_cos(self.rotation_rad(edge));
+        let [x, y] = [here[0] - there[0], here[1] - there[1]];
+        [at[0] + cos * x - sin * y, at[1] + sin * x + cos * y]
+    }
+
+    /// Stress along the beam on the left and right face at u, Pa, tension positive: N/A ∓ M w/(2 I). In a rigid part that where it ends.
+    ///
+    /// Lan, Wang & Chen 2010, eq. (5), which has the bending term only: so has [`Theory::Inextensible`]. The shift of the neutral
+    /// axis in strongly curved beams is neglected.
+    pub fn stress_pa(&self, u: f64) -> [f64; 2] {
+        let (_, piece, v) = self.piece_at(u);
+        piece.stress_pa(v)
+    }
+
+    /// The largest stress magnitude over both faces and the whole length, ends included.
+    pub fn peak_stress(&self) -> PeakStress {
+        self.peak
+    }
+}
+
+/// One piece of a beam in equilibrium; places v in [0, 1] run along the piece.
+#[derive(Debug, Clone)]
+pub(crate) struct PieceState {
+    pub(crate) force_n: [f64; 2],
+    /// Rotations of its ends, rad.
+    pub(crate) ends: [f64; 2],
+    /// Amplitudes `a_2`, `a_3`, … of the rotation φ = `φ_A` (1 − v) + `φ_B` v + Σ `a_k` (`P_k` − `P_{k−2}`)/(2 √(2k−1)) with Legendre
+    /// polynomials of 2v − 1, rad.
+    pub(crate) modes_rad: Vec<f64>,
+    start_displacement_m: [f64; 2],
+    peak: PeakStress,
+    pub(crate) info: Arc<PieceInfo>,
+    series: Arc<Series>,
+}
+
+/// Raw results for [`PieceState::new`].
+pub(crate) struct Solved {
+    pub(crate) force_n: [f64; 2],
+    pub(crate) ends: [f64; 2],
+    pub(crate) modes: Vec<f64>,
+    pub(crate) start_displacement_m: [f64; 2],
+}
+
+impl PieceState {
+    pub(crate) fn new(solved: Solved, info: &Arc<PieceInfo>, sampling: &Sampling) -> Self {
+        let mut state = Self {
+            force_n: solved.force_n,
+            ends: solved.ends,
+            modes_rad: solved.modes,
+            start_displacement_m: solved.start_displacement_m,
+            peak: PeakStress { stress_pa: 0.0, u: 0.0, face: Face::Left, tension: false },
+            info: Arc::clone(info),
+            series: Arc::clone(&sampling.series),
         };
+        state.peak = state.find_peak(sampling);
+        state
+    }
+
+    /// Rotation φ(v) and its slope dφ/dv, rad.
+    pub(crate) fn rotation_and_slope(&self, u: f64) -> (f64, f64) {
+        let x = 2.0 * u - 1.0;
+        let turn = self.ends[1] - self.ends[0];
+        let (mut value, mut slope) = (self.ends[0] + turn * u, turn);
+        let (mut before, mut here) = (1.0, x);
+        for (a, [ratio, root, half]) in self.modes_rad.iter().zip(&self.series.terms) {
+            let next = x * here + ratio * (x * here - before);
+            value += a * half * (next - before);
+            slope += a * root * here;
+            (before, here) = (here, next);
+        }
+        (value, slope)
+    }
+
+    /// EI/L at a place of the given section, N·m.
+    fn bending_stiffness_nm(&self, section: &Section) -> f64 {
+        section.bending_stiffness_n_m2() / self.info.shape.length_m()
+    }
+
+    pub(crate) fn angle_rad(&self, u: f64) -> f64 {
+        self.info.shape.angle_at(u) + self.rotation_and_slope(u).0
+    }
+
+    pub(crate) fn moment_nm(&self, u: f64) -> f64 {
+        self.bending_stiffness_nm(&self.info.section_at(u)) * self.rotation_and_slope(u).1
+    }
+
+    pub(crate) fn axial_force_n(&self, u: f64) -> f64 {
+        let (sin, cos) = maths::sin_cos(self.angle_rad(u));
+        self.force_n[0] * cos + self.force_n[1] * sin
+    }
+
+    pub(crate) fn shear_force_n(&self, u: f64) -> f64 {
+        let (sin, cos) = maths::sin_cos(self.angle_rad(u));
+        self.force_n[1] * cos - self.force_n[0] * sin
+    }
+
+    /// Deformed position of the axis, m.
+    fn shape_m(&self, u: f64) -> [f64; 2] {
         let length = self.info.shape.length_m() * u;
         let mut point = [0, 1].map(|i| self.info.start_m[i] + self.start_displacement_m[i]);
         for (&node, &weight) in self.series.rule.nodes().iter().zip(self.series.rule.weights()) {
             let (sin, cos) = maths::sin_cos(self.angle_rad(node * u));
+            let section = self.info.section_at(node * u);
+            let (axial, shear) = match self.info.theory {
+                Theory::Inextensible => (0.0, 0.0),
+                Theory::Reissner => (1.0 / section.axial_stiffness_n(), 1.0 / section.shear_stiffness_n()),
+            };
             let stretch = 1.0 + axial * (self.force_n[0] * cos + self.force_n[1] * sin);
             let slide = shear * (self.force_n[1] * cos - self.force_n[0] * sin);
             point[0] += length * weight * (stretch * cos - slide * sin);
@@ -271,18 +410,15 @@ impl BeamState {
         point
     }
 
-    /// Stress along the beam on the left and right face at u, Pa, tension positive: N/A ∓ M w/(2 I).
-    ///
-    /// Lan, Wang & Chen 2010, eq. (5), which has the bending term only: so has [`Theory::Inextensible`]. The shift of the neutral
-    /// axis in strongly curved beams is neglected.
-    pub fn stress_pa(&self, u: f64) -> [f64; 2] {
+    /// Stress on the left and right face, Pa.
+    fn stress_pa(&self, u: f64) -> [f64; 2] {
         let (rotation, slope) = self.rotation_and_slope(u);
         self.face_stress(u, rotation, slope)
     }
 
     fn face_stress(&self, u: f64, rotation: f64, slope: f64) -> [f64; 2] {
-        let section = &self.info.section;
-        let bending = self.bending_stiffness_nm() * slope * section.face_stress_per_moment_per_m3();
+        let section = self.info.section_at(u);
+        let bending = self.bending_stiffness_nm(&section) * slope * section.face_stress_per_moment_per_m3();
         let axial = match self.info.theory {
             Theory::Inextensible => 0.0,
             Theory::Reissner => {
@@ -293,20 +429,15 @@ impl BeamState {
         [axial - bending, axial + bending]
     }
 
-    /// The largest stress magnitude over both faces and the whole length, ends included.
-    pub fn peak_stress(&self) -> PeakStress {
-        self.peak
-    }
-
     fn find_peak(&self, sampling: &Sampling) -> PeakStress {
         let count = sampling.u.len();
-        let turn = self.end_rotation_rad - self.start_rotation_rad;
+        let turn = self.ends[1] - self.ends[0];
         let mut samples: [Vec<f64>; 2] = [Vec::with_capacity(count), Vec::with_capacity(count)];
         let dot = |row: &[f64]| -> f64 { row.iter().zip(&self.modes_rad).map(|(r, a)| r * a).sum() };
         let rows = sampling.slopes.chunks_exact(sampling.modes).zip(sampling.values.chunks_exact(sampling.modes));
         for (&u, (slopes, values)) in sampling.u.iter().zip(rows) {
             let bending_only = self.info.theory == Theory::Inextensible;
-            let rotation = if bending_only { 0.0 } else { self.start_rotation_rad + turn * u + dot(values) };
+            let rotation = if bending_only { 0.0 } else { self.ends[0] + turn * u + dot(values) };
             let stress = self.face_stress(u, rotation, turn + dot(slopes));
             samples[0].push(stress[0].abs());
             samples[1].push(stress[1].abs());

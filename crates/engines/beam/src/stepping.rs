@@ -1,11 +1,13 @@
 //! One path at one resolution: predictor, corrector and step control.
 
 use crate::{
-    assembly::{Model, Resolution, System},
+    assembly::{Resolution, System},
     counters::Counters,
     element::recover,
     error::Status,
-    state::{BeamState, NodeState, Point, Sampling, Solved},
+    model::Model,
+    output,
+    state::{BeamState, NodeState, PieceState, Point, Sampling, Solved},
 };
 
 /// Largest change of a rotation in one step, rad.
@@ -88,7 +90,8 @@ pub(crate) struct Stepper<'a> {
     pub(crate) progress: &'a mut dyn FnMut(f64) -> bool,
     pub(crate) state: Vec<f64>,
     pub(crate) predicted: Vec<f64>,
-    pub(crate) reaction: f64,
+    /// Forces of what is not solved for, from the driven unknown on.
+    pub(crate) holding: Vec<f64>,
 }
 
 impl<'a> Stepper<'a> {
@@ -99,7 +102,7 @@ impl<'a> Stepper<'a> {
         counters: &'a mut Counters,
         progress: &'a mut dyn FnMut(f64) -> bool,
     ) -> Self {
-        let length = resolution.state_len(model);
+        let length = resolution.initial.len();
         let mut weights = vec![1.0; length];
         for (place, _) in model.nodes.iter().flat_map(|n| &n.translations) {
             weights[*place] = TRAVEL_WEIGHT;
@@ -115,9 +118,36 @@ impl<'a> Stepper<'a> {
             budget,
             counters,
             progress,
-            state: vec![0.0; length],
+            state: resolution.initial.clone(),
             predicted: vec![0.0; length],
-            reaction: 0.0,
+            holding: vec![0.0; model.unknowns - model.solved],
+        }
+    }
+
+    /// Puts a state where the control of a kinematic drive wants it.
+    pub(crate) fn drive_to(&mut self, control: f64) {
+        let model = self.system.model;
+        if model.kinematic {
+            let driven = model.driven();
+            self.predicted[driven] = self.system.resolution.initial[driven] + control / model.projection;
+        }
+    }
+
+    /// Dimensionless force of a kinematic drive at the state that was just solved for.
+    pub(crate) fn reaction(&self) -> f64 {
+        self.holding.first().map_or(0.0, |h| h / self.system.model.projection)
+    }
+
+    /// Displacement along the drive from where it began, dimensionless.
+    pub(crate) fn driven_displacement(&self, x: &[f64]) -> f64 {
+        self.system.model.along_drive(x) - self.system.model.along_drive(&self.system.resolution.initial)
+    }
+
+    /// Remembers what holds the unknowns that are not solved for: exact to second order in the last correction.
+    pub(crate) fn remember_holding(&mut self) {
+        let first = self.system.model.solved;
+        for (i, target) in self.holding.iter_mut().enumerate() {
+            *target = self.system.holding(first + i);
         }
     }
 
@@ -176,7 +206,7 @@ impl<'a> Stepper<'a> {
             return Some(self.name_singularity(&null));
         }
         self.system.newton_step();
-        self.reaction = self.system.reaction();
+        self.remember_holding();
         self.system.tangent();
         self.keep(&mut run.knots, 0.0);
         None
@@ -187,6 +217,8 @@ impl<'a> Stepper<'a> {
         let model = self.system.model;
         let size = |i: usize| null.get(i).map_or(0.0, |v| v.abs());
         let largest_beam = largest(model.beams.iter().map(|b| size(b.force).max(size(b.force + 1))));
+        // A cut belongs to its beam.
+        let drawn = |n: usize| if n < model.drawn_nodes { n } else { drawn_neighbour(model, n) };
         let node_motion = |n: usize| {
             let held = &model.nodes[n];
             let own = held.translations.iter().map(|t| t.0).chain(held.rotation).map(size).fold(0.0, f64::max);
@@ -195,9 +227,10 @@ impl<'a> Stepper<'a> {
         };
         let largest_node = largest((0..model.nodes.len()).map(node_motion));
         if largest_node.1 > 1e-6 * largest_beam.1 {
-            Status::Mechanism { node: largest_node.0 }
+            Status::Mechanism { node: drawn(largest_node.0) }
         } else {
-            Status::OverConstrained { beam: largest_beam.0 }
+            let beam = model.spans.iter().position(|(pieces, _)| pieces.contains(&largest_beam.0));
+            Status::OverConstrained { beam: beam.unwrap_or(0) }
         }
     }
 
@@ -255,10 +288,7 @@ impl<'a> Stepper<'a> {
                 *p = x + ahead * t;
             }
         }
-        if self.system.model.kinematic {
-            let driven = self.system.model.driven();
-            self.predicted[driven] = target / self.system.model.projection;
-        }
+        self.drive_to(target);
     }
 
     /// Newton's method from [`Stepper::state`]. On success the system is linearised at a state that differs by less than
@@ -285,7 +315,7 @@ impl<'a> Stepper<'a> {
                 *x += c;
             }
             if size <= CONVERGED || (iteration >= 2 && size <= ROUNDING && size > 0.25 * last) {
-                self.reaction = self.system.reaction();
+                self.remember_holding();
                 return Ok(());
             }
             last = size;
@@ -345,9 +375,7 @@ impl<'a> Stepper<'a> {
     /// The equilibrium at a control next to a guess, or nothing.
     pub(crate) fn solve_near(&mut self, guess: Vec<f64>, target: f64, control: f64) -> Option<Point> {
         self.predicted = guess;
-        if self.system.model.kinematic {
-            self.predicted[self.system.model.driven()] = target / self.system.model.projection;
-        }
+        self.drive_to(target);
         self.state.copy_from_slice(&self.predicted);
         self.correct(target).ok()?;
         if self.distance_from_prediction() > LARGEST_CORRECTION {
@@ -363,7 +391,7 @@ impl<'a> Stepper<'a> {
         let (model, resolution) = (self.system.model, self.system.resolution);
         let (length, force) = (model.length_m, model.force_n);
         let mut energy = 0.0;
-        let mut beams = Vec::with_capacity(model.beams.len());
+        let mut pieces = Vec::with_capacity(model.beams.len());
         for (index, beam) in model.beams.iter().enumerate() {
             let at = resolution.coordinates(model, index, x);
             let mut modes = Vec::new();
@@ -372,32 +400,57 @@ impl<'a> Stepper<'a> {
                 force_n: at.force.map(|f| force * f),
                 ends: at.ends,
                 modes,
-                start_displacement_m: model.displacement(beam.nodes[0], x).map(|u| length * u),
+                start_displacement_m: model.end_displacement(index, 0, x).map(|u| length * u),
             };
-            beams.push(BeamState::new(solved, &beam.info, &self.sampling));
+            pieces.push(PieceState::new(solved, &beam.info, &self.sampling));
         }
-        let motion = |(index, node): (usize, &crate::assembly::NodeFreedom)| NodeState {
-            displacement_m: model.displacement(index, x).map(|u| length * u),
-            rotation_rad: Model::rotation(node.rotation, x),
-        };
-        let stiffness = self.system.stiffness(tangent) * model.reaction_unit() / model.displacement_unit();
+        let mut pieces = pieces.into_iter();
+        let beams = model.spans.iter().map(|(span, line)| BeamState::new(pieces.by_ref().take(span.len()).collect(), line.clone()));
         let (displacement, reaction) = if model.kinematic {
-            (control, self.reaction * model.reaction_unit())
+            (control, self.reaction() * model.reaction_unit())
         } else {
-            (model.projection * x[model.driven()] * model.displacement_unit(), control)
+            (self.driven_displacement(x) * model.displacement_unit(), control)
         };
         Point {
             control,
             displacement,
             force: reaction,
-            stiffness,
+            stiffness: self.system.stiffness(tangent) * model.reaction_unit() / model.displacement_unit(),
+            output_stiffness: output::stiffness(&self.system, model.driven_node),
             instability: self.instability(),
             branch: 0,
             energy_j: energy * force * length,
-            nodes: model.nodes.iter().enumerate().map(motion).collect(),
-            beams,
+            beams: beams.collect(),
+            nodes: self.node_states(x, control / model.control_unit()),
+            state: x.to_vec(),
         }
     }
+
+    /// Motions of the nodes of the network, and what acts on them from outside.
+    fn node_states(&self, x: &[f64], control: f64) -> Vec<NodeState> {
+        let model = self.system.model;
+        let mut outside = vec![0.0; model.unknowns];
+        outside[model.solved..].copy_from_slice(&self.holding);
+        for (place, force) in &model.dead {
+            outside[*place] += force;
+        }
+        for (place, factor) in &model.pull {
+            outside[*place] += control * factor;
+        }
+        let state = |(index, node): (usize, &crate::model::NodeFreedom)| NodeState {
+            displacement_m: model.displacement(index, x).map(|u| model.length_m * u),
+            rotation_rad: Model::rotation(node.rotation, x),
+            force_n: model.displacement(index, &outside).map(|f| model.force_n * f),
+            moment_nm: node.rotation.map_or(0.0, |i| model.force_n * model.length_m * outside[i]),
+        };
+        model.nodes.iter().take(model.drawn_nodes).enumerate().map(state).collect()
+    }
+}
+
+/// A node of the network next to a cut.
+fn drawn_neighbour(model: &Model, cut: usize) -> usize {
+    let span = model.spans.iter().find(|(pieces, _)| model.beams[pieces.clone()].iter().any(|b| b.nodes.contains(&cut)));
+    span.and_then(|(pieces, _)| model.beams.get(pieces.start)).map_or(0, |b| b.nodes[0])
 }
 
 /// Length of the next step after one of length `taken` whose prediction was wrong by `distance`.

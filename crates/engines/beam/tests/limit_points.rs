@@ -44,8 +44,7 @@ fn truss(drive: Drive) -> Network {
     Network {
         nodes: vec![node(places[0], Support::Pinned), node(places[1], Support::Pinned), node(places[2], Support::Free)],
         beams: vec![beam(0), beam(1)],
-        drive,
-    }
+        drive, before: Vec::new() }
 }
 
 /// dF/dΔ of the truss = 2 EA (1/L − a²/l³), negative around the flat position.
@@ -217,7 +216,7 @@ fn a_thousand_random_networks_are_followed() {
         }
         let stations = if by_force { &loads } else { &travel };
         let theory = if index % 2 == 0 { Theory::Inextensible } else { Theory::Reissner };
-        let settings = Settings { theory, accuracy: 1e-4, follow: Follow::ToEnd, iteration_limit: 20_000 };
+        let settings = Settings { theory, accuracy: 1e-4, follow: Follow::ToEnd, iteration_limit: 20_000, ..Settings::default() };
         let path = trace(&network, stations, &settings, &mut |_| true).unwrap();
         assert!(path.counters.newton_iterations < 40_000, "{index}: {:?}", path.counters);
         if path.whole_status == Status::Complete {

@@ -378,7 +378,7 @@ impl Builder<'_> {
             .zip(supports)
             .map(|(at, support)| Some(Node { position_m: *at, support: support? }))
             .collect::<Option<Vec<_>>>()?;
-        Some((Network { nodes, beams, drive: Drive::Displacement { node: load_node?, direction } }, direction))
+        Some((Network::new(nodes, beams, Drive::Displacement { node: load_node?, direction }), direction))
     }
 
     fn drawn<'b>(&mut self, member: &'b Member<spec::Beam>) -> Option<Drawn<'b>> {
@@ -599,7 +599,7 @@ impl Builder<'_> {
         let joint = |node: usize| if hinged(node) { Joint::Hinged } else { Joint::Rigid };
         let (start_joint, end_joint) = (joint(drawn.start), joint(drawn.end));
         let section = Section { thickness_m: thickness_m?, ..section? };
-        Some(Beam { start: drawn.start, end: drawn.end, shape, section, start_joint, end_joint })
+        Some(Beam { start_joint, end_joint, ..Beam::new(drawn.start, drawn.end, shape, section) })
     }
 
     /// `x = 0` or `y = 2 mm`; the load must move along the line.

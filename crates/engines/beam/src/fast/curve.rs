@@ -7,10 +7,10 @@ use super::lanes::{LANES, Lane};
 use super::network::{Net, add_scaled};
 use super::stencil::Stencil;
 use super::stress::{Sampling, Scratch, Slopes};
-use crate::assembly::Model;
+use crate::model::Model;
 use crate::counters::Counters;
 use crate::error::{NetworkError, Status};
-use crate::network::{Drive, Network, Settings};
+use crate::network::{Drive, Joints, Network, Settings};
 use crate::path::{check_stations, trace};
 
 /// Largest distance between prediction and solution, rad, as in the general path.
@@ -89,7 +89,8 @@ impl CurveSolver {
         }
         let model = Model::new(network, settings.theory);
         let mut counters = Counters::default();
-        if matches!(network.drive, Drive::Displacement { .. }) && !stations_m.is_empty() {
+        let plain = model.plain && settings.joints == Joints::Point;
+        if plain && matches!(network.drive, Drive::Displacement { .. }) && !stations_m.is_empty() {
             let first = usize::from(settings.accuracy < 3e-7);
             for level in first..4 {
                 let out = &mut self.response;

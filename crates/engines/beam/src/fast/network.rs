@@ -2,7 +2,7 @@
 
 use super::kernel::{Condensed, Unknowns};
 use super::lanes::{LANES, Lane};
-use crate::assembly::Model;
+use crate::model::Model;
 
 /// How an unknown of the network moves a beam.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,8 @@ pub(crate) struct NoPivot;
 
 impl Net {
     pub(crate) fn new(model: &Model, travel_weight: f64) -> Self {
-        let mut place = vec![Some(0_usize); model.unknowns];
+        // What supports hold is left out.
+        let mut place = vec![Some(0_usize); model.solved + 1];
         for beam in &model.beams {
             place[beam.force] = None;
             place[beam.force + 1] = None;
@@ -57,18 +58,19 @@ impl Net {
         }
         let mut weights = vec![1.0; unknowns];
         let at = |i: usize| place.get(i).copied().flatten().unwrap_or(0);
-        for (i, _) in model.nodes.iter().flat_map(|n| &n.translations) {
+        let moves = |i: &usize| *i <= model.solved;
+        for (i, _) in model.nodes.iter().flat_map(|n| &n.translations).filter(|(i, _)| moves(i)) {
             weights[at(*i)] = travel_weight;
         }
         let incidences = model
             .beams
             .iter()
             .map(|beam| {
-                let turns = beam.ends.iter().enumerate().filter_map(|(end, i)| Some((at((*i)?), Motion::Turn(end))));
+                let turns = beam.ends.iter().enumerate().filter_map(|(end, i)| Some(((*i)?, Motion::Turn(end))));
                 let spreads = beam.nodes.iter().zip([-1.0, 1.0]).flat_map(|(node, sign)| {
                     model.nodes[*node].translations.iter().map(move |(i, d)| (*i, Motion::Spread([sign * d[0], sign * d[1]])))
                 });
-                Incidence { motions: turns.chain(spreads.map(|(i, m)| (at(i), m))).collect() }
+                Incidence { motions: turns.chain(spreads).filter(|(i, _)| moves(i)).map(|(i, m)| (at(i), m)).collect() }
             })
             .collect();
         Self {

@@ -7,7 +7,7 @@ use forcewright_base::maths;
 use super::kernel::{EXTRA, Unknowns};
 use super::lanes::{LANES, Lane};
 use super::network::add_scaled;
-use crate::assembly::Model;
+use crate::model::Model;
 use crate::element::root_of;
 
 /// Beams whose coarse maximum is at least this part of the largest are looked at closely.
@@ -73,7 +73,7 @@ impl<const M: usize> Sampling<M> {
         for group in model.beams.chunks(LANES) {
             let mut factors = [Lane::ZERO; 2];
             for (lane, beam) in group.iter().enumerate() {
-                let section = beam.info.section();
+                let section = &beam.info.section;
                 factors[0].0[lane] = 0.5 * section.young_pa * section.thickness_m / beam.info.shape.length_m();
                 if beam.constants.axial > 0.0 {
                     factors[1].0[lane] = model.force_n / section.area_m2();

@@ -6,16 +6,16 @@
 
 use forcewright_base::{maths, quadrature::legendre_values};
 
-use super::field::{BeamRhs, Field, Sensitivity, dot, turned};
+use super::field::{BeamRhs, Field, Place, Sensitivity, dot, turned};
 use crate::{
     element::root_of,
-    state::{BeamState, Face},
+    state::{Face, PieceState},
 };
 
-/// Derivatives of one output by one beam.
+/// Derivatives of one output by one piece of a beam. Places are along the piece.
 pub(super) struct Seed<'f, 'a> {
     field: &'f Field<'a>,
-    state: &'f BeamState,
+    state: &'f PieceState,
     /// By the recovered amplitudes.
     modes: Vec<f64>,
     pub(super) rhs: BeamRhs,
@@ -24,7 +24,7 @@ pub(super) struct Seed<'f, 'a> {
 }
 
 impl<'f, 'a> Seed<'f, 'a> {
-    pub(super) fn new(field: &'f Field<'a>, state: &'f BeamState, coefficients: usize) -> Self {
+    pub(super) fn new(field: &'f Field<'a>, state: &'f PieceState, coefficients: usize) -> Self {
         let modes = state.modes_rad.len();
         Self {
             field,
@@ -54,23 +54,27 @@ impl<'f, 'a> Seed<'f, 'a> {
         for (k, target) in (2..).zip(&mut self.modes) {
             *target += factor * (self.legendre[k] - self.legendre[k - 2]) / (2.0 * root_of(k));
         }
-        self.explicit.add_angle(u, factor);
+        self.explicit.add_angle(&Place::new(self.field.info, u), factor);
     }
 
-    /// `factor` times the stress in Pa on a face; see [`BeamState::stress_pa`].
+    /// `factor` times the stress in Pa on a face; see [`crate::BeamState::stress_pa`].
     pub(super) fn add_stress(&mut self, u: f64, face: Face, factor: f64, force_unit_n: f64) {
-        let info = self.state.info();
+        let info = self.field.info;
+        let (section, place) = (info.section_at(u), Place::new(info, u));
         let sign = if face == Face::Left { -factor } else { factor };
-        let bending = sign * self.state.moment_nm(u) * info.section().face_stress_per_moment_per_m3();
+        let bending = sign * self.state.moment_nm(u) * section.face_stress_per_moment_per_m3();
         self.explicit.bending += bending;
         self.explicit.thickness -= 2.0 * bending;
         self.explicit.depth -= bending;
-        self.add_slope(u, sign * info.stress_unit_pa());
+        // E w/(2 L) φ'.
+        self.explicit.add_thickness(&place, bending);
+        self.add_slope(u, sign * 0.5 * section.young_pa * section.thickness_m / info.shape.length_m());
         if self.field.constants.axial > 0.0 {
-            let per_area = factor / info.section().area_m2();
+            let per_area = factor / section.area_m2();
             let axial = self.state.axial_force_n(u) * per_area;
             self.explicit.thickness -= axial;
             self.explicit.depth -= axial;
+            self.explicit.add_thickness(&place, -axial);
             self.add_angle(u, self.state.shear_force_n(u) * per_area);
             let along = direction(self.state, u);
             for (target, component) in self.rhs.force.iter_mut().zip(along) {
@@ -79,23 +83,25 @@ impl<'f, 'a> Seed<'f, 'a> {
         }
     }
 
-    /// The dimensionless position along `axis` relative to the start of the beam; see [`BeamState::shape_m`].
+    /// The dimensionless position along `axis` relative to the start of the piece; see [`crate::BeamState::shape_m`].
     pub(super) fn add_position(&mut self, u: f64, axis: [f64; 2]) {
         let (c, force) = (self.field.constants, self.field.at.force);
         let rule = &self.field.basis.rule;
         for (&node, &weight) in rule.nodes().iter().zip(rule.weights()) {
-            let (place, w) = (node * u, c.length * u * weight);
-            let along = direction(self.state, place);
+            let (place, w) = (Place::new(self.field.info, node * u), c.length * u * weight);
+            let along = direction(self.state, place.v);
             let (t, n) = (dot(axis, along), dot(axis, turned(along)));
             let (axial, across) = (dot(force, along), dot(force, turned(along)));
-            let (stretch, slide) = (c.axial * axial, c.shear * across);
+            let soft = place.soft(&c);
+            let (stretch, slide) = (soft[0] * axial, soft[1] * across);
             self.explicit.axial += w * stretch * t;
             self.explicit.shear += w * slide * n;
+            self.explicit.add_thickness(&place, -w * (stretch * t + slide * n));
             self.explicit.length += w * ((1.0 + stretch) * t + slide * n);
-            let by_angle = (c.axial - c.shear) * (across * t + axial * n) + n;
-            self.add_angle(place, w * by_angle);
+            let by_angle = (soft[0] - soft[1]) * (across * t + axial * n) + n;
+            self.add_angle(place.v, w * by_angle);
             for (target, (x, y)) in self.rhs.force.iter_mut().zip(along.iter().zip(turned(along))) {
-                *target += w * (c.axial * t * x + c.shear * n * y);
+                *target += w * (soft[0] * t * x + soft[1] * n * y);
             }
         }
     }
@@ -103,6 +109,13 @@ impl<'f, 'a> Seed<'f, 'a> {
     /// Carries the derivatives by the amplitudes back to the state.
     pub(super) fn close(mut self) -> (BeamRhs, Sensitivity) {
         let Self { field, ref modes, .. } = self;
+        if field.varies() {
+            // Such amplitudes are the bubbles themselves.
+            for (target, by_mode) in self.rhs.bubbles.iter_mut().zip(modes) {
+                *target += by_mode;
+            }
+            return (self.rhs, self.explicit);
+        }
         let c = field.constants;
         let recovered: f64 = modes.iter().zip(&self.state.modes_rad).map(|(s, a)| s * a).sum();
         self.explicit.length += recovered;
@@ -115,7 +128,7 @@ impl<'f, 'a> Seed<'f, 'a> {
         for ((p, (_, row)), legendre) in field.points.iter().zip(field.basis.rows()).zip(field.basis.legendre.chunks_exact(points)) {
             let by_load = p.weight * legendre.iter().zip(&by_moment).map(|(l, b)| l * b).sum::<f64>();
             self.rhs.add_rotation(row, by_load * p.load_by_angle);
-            self.explicit.add_angle(p.u, by_load * p.load_by_angle);
+            self.explicit.add_angle(&p.place, by_load * p.load_by_angle);
             for (target, slope) in self.rhs.force.iter_mut().zip(p.load_by_force) {
                 *target += by_load * slope;
             }
@@ -128,27 +141,35 @@ impl<'f, 'a> Seed<'f, 'a> {
 }
 
 /// t(θ) at u.
-fn direction(state: &BeamState, u: f64) -> [f64; 2] {
+fn direction(state: &PieceState, u: f64) -> [f64; 2] {
     let (sin, cos) = maths::sin_cos(state.angle_rad(u));
     [cos, sin]
 }
 
-/// The place of a largest stress, known to about 1e-6, improved where dσ/du vanishes inside the beam.
-pub(super) fn polished_place(state: &BeamState, u: f64, face: Face, extensible: bool) -> f64 {
-    let info = state.info();
-    let (section, length) = (info.section(), info.shape.length_m());
-    let stiffness = section.bending_stiffness_n_m2();
-    let softness = if extensible { 1.0 / section.axial_stiffness_n() - 1.0 / section.shear_stiffness_n() } else { 0.0 };
-    let side = if face == Face::Left { -1.0 } else { 1.0 };
-    let slope = |u: f64| {
-        let (axial, across) = (state.axial_force_n(u), state.shear_force_n(u));
-        let bending = -side * length * (across + softness * axial * across) * section.face_stress_per_moment_per_m3();
-        let turn = info.shape.slope_at(u) + state.moment_nm(u) * length / stiffness;
-        if extensible { bending + across * turn / section.area_m2() } else { bending }
-    };
+/// The place of a largest stress, known to about 1e-6, improved where dσ/du vanishes inside the piece.
+pub(super) fn polished_place(state: &PieceState, u: f64, face: Face, extensible: bool) -> f64 {
+    let info = &state.info;
     if u <= 0.0 || u >= 1.0 {
         return u;
     }
+    let length = info.shape.length_m();
+    let side = if face == Face::Left { -1.0 } else { 1.0 };
+    let thickness_slope = info.thickness_m.map_or(0.0, |[a, b]| b - a);
+    let slope = |u: f64| {
+        let section = info.section_at(u);
+        let stiffness = section.bending_stiffness_n_m2();
+        let softness = if extensible { 1.0 / section.axial_stiffness_n() - 1.0 / section.shear_stiffness_n() } else { 0.0 };
+        let (axial, across) = (state.axial_force_n(u), state.shear_force_n(u));
+        let (moment, per_moment) = (state.moment_nm(u), section.face_stress_per_moment_per_m3());
+        // M' and the change of 6/(b w²).
+        let bending = -side * (length * (across + softness * axial * across) + 2.0 * moment * thickness_slope / section.thickness_m) * per_moment;
+        let turn = info.shape.slope_at(u) + moment * length / stiffness;
+        if extensible {
+            bending + (across * turn - axial * thickness_slope / section.thickness_m) / section.area_m2()
+        } else {
+            bending
+        }
+    };
     let (mut before, mut here) = (u, if u < 0.5 { u + 1e-4 } else { u - 1e-4 });
     let (mut slope_before, mut slope_here) = (slope(before), slope(here));
     for _ in 0..6 {

@@ -1,0 +1,47 @@
+//! Stiffness of one node against all its motions.
+
+use forcewright_base::dense::Lu;
+
+use crate::assembly::System;
+
+/// Forces per motion (x, y, rotation) of a node with all other unknowns in equilibrium, SI: the Schur complement of the tangent on
+/// the motions of the node. `None` where the rest is singular.
+pub(crate) fn stiffness(system: &System, node: usize) -> Option<[[f64; 3]; 3]> {
+    let (model, m) = (system.model, system.model.unknowns);
+    let freedom = &model.nodes[node];
+    let own: Vec<usize> = freedom.translations.iter().map(|t| t.0).chain(freedom.rotation).collect();
+    let others: Vec<usize> = (0..model.solved).filter(|i| !own.contains(i)).collect();
+    let entry = |row: usize, column: usize| system.matrix[row * m + column];
+    let n = others.len();
+    let block: Vec<f64> = others.iter().flat_map(|&row| others.iter().map(move |&column| entry(row, column))).collect();
+    let mut lu = Lu::new();
+    lu.factor(n, n, &block).ok()?;
+    // Per own motion: how the others answer.
+    let mut answers = Vec::with_capacity(own.len());
+    for &column in &own {
+        let mut answer: Vec<f64> = others.iter().map(|&row| -entry(row, column)).collect();
+        lu.solve(&mut answer);
+        answers.push(answer);
+    }
+    let condensed = |i: usize, j: usize| {
+        let sum: f64 = others.iter().zip(&answers[j]).map(|(&column, a)| entry(own[i], column) * a).sum();
+        entry(own[i], own[j]) + sum
+    };
+    // From the directions of the unknowns to x, y and rotation.
+    let mut axes: Vec<[f64; 3]> = freedom.translations.iter().map(|(_, d)| [d[0], d[1], 0.0]).collect();
+    axes.extend(freedom.rotation.map(|_| [0.0, 0.0, 1.0]));
+    let unit = |axis: usize| if axis == 2 { model.length_m } else { 1.0 };
+    let mut sum = [[0.0; 3]; 3];
+    for (i, a) in axes.iter().enumerate() {
+        for (j, b) in axes.iter().enumerate() {
+            // Averaged with its mirror image: symmetric to the last bit.
+            let value = 0.5 * (condensed(i, j) + condensed(j, i)) * model.force_n / model.length_m;
+            for (row, target) in sum.iter_mut().enumerate() {
+                for (column, target) in target.iter_mut().enumerate() {
+                    *target += value * a[row] * b[column] * unit(row) * unit(column);
+                }
+            }
+        }
+    }
+    sum.iter().flatten().all(|v| v.is_finite()).then_some(sum)
+}
