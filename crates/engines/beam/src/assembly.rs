@@ -7,6 +7,7 @@ use forcewright_base::dense::{Lu, Singular};
 use crate::{
     element::{Basis, Coordinates, Element, RestShape},
     model::{Model, swing},
+    network::is_zero,
 };
 
 /// Tables for one polynomial degree, and where the path starts.
@@ -138,7 +139,7 @@ impl<'a> System<'a> {
                 }
             }
             let arm = beam.arms[end];
-            if let Some(turn) = freedom.rotation.filter(|_| arm != [0.0; 2]) {
+            if let Some(turn) = freedom.rotation.filter(|_| !is_zero(arm)) {
                 self.scatter_arm(arm, sign, turn, beam.force, x);
             }
         }

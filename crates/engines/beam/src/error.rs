@@ -145,11 +145,9 @@ impl fmt::Display for NetworkError {
                 f,
                 "the shape of beam {beam} ends {gap_m:.3e} m away from its node; take the node from the shape, or the shape from the chord"
             ),
-            Self::Profile { beam } => write!(
-                f,
-                "beam {beam}: places of the thickness must ascend from 0 to 1, at most {} of them",
-                crate::Network::MOST_PLACES
-            ),
+            Self::Profile { beam } => {
+                write!(f, "beam {beam}: places of the thickness must ascend from 0 to 1, at most {} of them", crate::Network::MOST_PLACES)
+            }
             Self::Arm { beam } => write!(f, "an arm of beam {beam} is not a finite number"),
             Self::AllRigid { beam, rigid_m } => write!(
                 f,

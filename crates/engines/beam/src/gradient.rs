@@ -32,9 +32,9 @@ use std::fmt;
 pub use closure::ChordSensitivity;
 pub use compute::Gradients;
 
+use crate::state::Face;
 #[cfg(doc)]
 use crate::state::{BeamState, Point};
-use crate::state::Face;
 
 /// A coordinate axis of the frame of the network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use forcewright_base::maths;
 
 use crate::{
     element::Constants,
-    network::{Beam, Drive, Joint, Network, Support, Theory, unit},
+    network::{Beam, Drive, Joint, Network, Support, Theory, is_zero, unit},
     overlap::Zones,
     state::{BeamLine, PieceInfo},
 };
@@ -304,7 +304,7 @@ impl<'a> Builder<'a> {
                     continue;
                 }
                 let (node, joint) = if end == 0 { (beam.start, beam.start_joint) } else { (beam.end, beam.end_joint) };
-                let rigid = self.rigid_part(beam, end, range[end]);
+                let rigid = rigid_part(beam, end, range[end]);
                 arms[end] = [0, 1].map(|i| (beam.arms_m[end][i] + rigid[i]) / self.length_m);
                 at[end] = node;
                 ends[end] = match joint {
@@ -314,20 +314,11 @@ impl<'a> Builder<'a> {
             }
             let force = self.unknown(Holder::Equilibrium);
             self.unknown(Holder::Equilibrium);
-            model.plain &= pieces == 1 && arms == [[0.0; 2]; 2] && range == [0.0, 1.0] && beam.profile.is_empty();
+            model.plain &= pieces == 1 && arms.into_iter().all(is_zero) && is_whole(range) && beam.profile.is_empty();
             let info = Arc::new(self.piece_info(beam, range, &line));
             model.beams.push(BeamModel { constants: self.constants(&info), nodes: at, arms, ends, force, info });
         }
         model.spans.push((first..model.beams.len(), line));
-    }
-
-    /// From an end of the beam to the flexible part, m.
-    fn rigid_part(&self, beam: &Beam, end: usize, u: f64) -> [f64; 2] {
-        if u == end as f64 {
-            return [0.0; 2];
-        }
-        let (from, to) = (beam.shape.point_m(end as f64), beam.shape.point_m(u));
-        [to[0] - from[0], to[1] - from[1]]
     }
 
     fn piece_info(&self, beam: &Beam, range: [f64; 2], line: &BeamLine) -> PieceInfo {
@@ -411,6 +402,20 @@ impl<'a> Builder<'a> {
         }
         Load { solved, projection, pull }
     }
+}
+
+fn is_whole([from, to]: [f64; 2]) -> bool {
+    from <= 0.0 && to >= 1.0
+}
+
+/// From an end of the beam to the flexible part, m.
+fn rigid_part(beam: &Beam, end: usize, u: f64) -> [f64; 2] {
+    let end_u = end as f64;
+    if (u - end_u).abs() <= 0.0 {
+        return [0.0; 2];
+    }
+    let (from, to) = (beam.shape.point_m(end_u), beam.shape.point_m(u));
+    [to[0] - from[0], to[1] - from[1]]
 }
 
 /// The section at the mean thickness of a part of a beam.

@@ -98,16 +98,7 @@ pub struct Beam {
 impl Beam {
     /// A beam of constant section, joined rigidly at both ends without arms.
     pub fn new(start: usize, end: usize, shape: Shape, section: Section) -> Self {
-        Self {
-            start,
-            end,
-            shape,
-            section,
-            start_joint: Joint::Rigid,
-            end_joint: Joint::Rigid,
-            arms_m: [[0.0; 2]; 2],
-            profile: Vec::new(),
-        }
+        Self { start, end, shape, section, start_joint: Joint::Rigid, end_joint: Joint::Rigid, arms_m: [[0.0; 2]; 2], profile: Vec::new() }
     }
 
     /// Thickness in the plane at u in [0, 1], m.
@@ -236,6 +227,11 @@ impl Default for Settings {
     }
 }
 
+/// Whether there is no arm.
+pub(crate) fn is_zero(v: [f64; 2]) -> bool {
+    v.iter().all(|x| *x == 0.0)
+}
+
 /// Unit vector along `v`.
 pub(crate) fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
     // Two steps, so that neither huge nor tiny vectors lose their direction.
@@ -333,10 +329,10 @@ impl Network {
     fn check_profile(&self, beam: usize) -> Result<(), NetworkError> {
         let b = &self.beams[beam];
         let wrong = |what, value| Err(NetworkError::Section { beam, what, value });
-        let places = b.profile.iter().map(|p| p[0]);
         if !b.profile.is_empty() {
             let ascending = b.profile.windows(2).all(|p| p[0][0] < p[1][0]);
-            let whole = places.clone().next() == Some(0.0) && places.clone().last() == Some(1.0);
+            let at = |place: Option<&[f64; 2]>, u: f64| place.is_some_and(|p| (p[0] - u).abs() <= 0.0);
+            let whole = at(b.profile.first(), 0.0) && at(b.profile.last(), 1.0);
             if !ascending || !whole || b.profile.len() > Self::MOST_PLACES {
                 return Err(NetworkError::Profile { beam });
             }
@@ -357,7 +353,7 @@ impl Network {
 
     /// Whether anything turns with the node: a beam end, or a hinge on an arm.
     pub(crate) fn turns_beams(&self, node: usize) -> bool {
-        let turns = |at: usize, joint: Joint, arm: [f64; 2]| at == node && (joint == Joint::Rigid || arm != [0.0; 2]);
+        let turns = |at: usize, joint: Joint, arm: [f64; 2]| at == node && (joint == Joint::Rigid || !is_zero(arm));
         self.beams.iter().any(|b| turns(b.start, b.start_joint, b.arms_m[0]) || turns(b.end, b.end_joint, b.arms_m[1]))
     }
 

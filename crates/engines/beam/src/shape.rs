@@ -191,7 +191,7 @@ impl Shape {
 
     /// The part from one place to another, 0 ≤ `from` < `to` ≤ 1; the whole shape with its very numbers.
     pub(crate) fn part(&self, [from, to]: [f64; 2]) -> Self {
-        if from == 0.0 && to == 1.0 {
+        if from <= 0.0 && to >= 1.0 {
             return self.clone();
         }
         // η(from + (to − from) v) in powers of v: Taylor shift by synthetic division, then scaling.

@@ -8,12 +8,7 @@ use forcewright_base::{
     roots,
 };
 
-use crate::{
-    element::root_of,
-    network::Theory,
-    section::Section,
-    shape::Shape,
-};
+use crate::{element::root_of, network::Theory, section::Section, shape::Shape};
 
 /// One equilibrium on a path.
 #[derive(Debug, Clone)]

@@ -283,7 +283,9 @@ fn table4_chain() {
             common::node(n4, common::VERTICAL_GUIDE),
         ],
         beams,
-        drive: Drive::Displacement { node: 3, direction: [0.0, -1.0] }, before: Vec::new() };
+        drive: Drive::Displacement { node: 3, direction: [0.0, -1.0] },
+        before: Vec::new(),
+    };
     let path = solve(&network, &metres(TABLE4.iter().map(|r| r.0)), &elastica());
     for (point, (_, force, stress)) in path.points.iter().zip(&TABLE4) {
         near(8.0 * point.force, *force, 1e-11, "force");

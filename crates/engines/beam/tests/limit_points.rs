@@ -44,7 +44,9 @@ fn truss(drive: Drive) -> Network {
     Network {
         nodes: vec![node(places[0], Support::Pinned), node(places[1], Support::Pinned), node(places[2], Support::Free)],
         beams: vec![beam(0), beam(1)],
-        drive, before: Vec::new() }
+        drive,
+        before: Vec::new(),
+    }
 }
 
 /// dF/dΔ of the truss = 2 EA (1/L − a²/l³), negative around the flat position.

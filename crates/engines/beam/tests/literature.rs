@@ -181,7 +181,9 @@ fn williams_toggle() {
     let network = Network {
         nodes: vec![node([0.0, 0.0], Support::Clamped), node(shape.chord_m(), VERTICAL_GUIDE)],
         beams: vec![rigid(0, 1, shape, bar)],
-        drive: Drive::Force { node: 1, direction: DOWN }, before: Vec::new() };
+        drive: Drive::Force { node: 1, direction: DOWN },
+        before: Vec::new(),
+    };
     let path = followed(&network, &[5.0, 10.0, 15.0, 30.0], Theory::Reissner);
     let chain = |point: &Point| {
         let end = [12.943, 0.386 - point.displacement];
@@ -240,7 +242,9 @@ fn lees_frame() {
             node([1.0, 1.0], Support::Pinned),
         ],
         beams: vec![piece(0, FRAC_PI_2, 1.0), piece(1, 0.0, 0.2), piece(2, 0.0, 0.8)],
-        drive: Drive::Force { node: 2, direction: DOWN }, before: Vec::new() };
+        drive: Drive::Force { node: 2, direction: DOWN },
+        before: Vec::new(),
+    };
     let path = followed(&network, &[10.0, 30.0], Theory::Inextensible);
     let limits: Vec<f64> = path.folds.iter().map(|f| f.control).collect();
     println!("limit loads of Lee's frame, EI/L²: {limits:?}");
@@ -269,7 +273,9 @@ fn deep_circular_arch() {
             node([crown[0] + foot[0], crown[1] + foot[1]], Support::Pinned),
         ],
         beams,
-        drive: Drive::Force { node: 1, direction: DOWN }, before: Vec::new() };
+        drive: Drive::Force { node: 1, direction: DOWN },
+        before: Vec::new(),
+    };
     let settings = Settings { accuracy: 1e-7, ..elastica() };
     let stopped = trace(&network, &[4.0, 12.0], &settings, &mut |_| true).unwrap();
     let Status::NoEquilibriumBeyond { control } = stopped.status else { panic!("{}", stopped.status) };
@@ -289,7 +295,9 @@ fn a_clamped_and_pinned_beam_turned_by_a_moment() {
     let network = Network {
         nodes: vec![node([0.0, 0.0], Support::Clamped), node([1.0, 0.1], Support::Pinned)],
         beams: vec![rigid(0, 1, shape, Section { thickness_m: 0.06, ..UNIT })],
-        drive: Drive::Rotation { node: 1 }, before: Vec::new() };
+        drive: Drive::Rotation { node: 1 },
+        before: Vec::new(),
+    };
     let settings = Settings { follow: Follow::ToEnd, ..Settings::default() };
     let path = trace(&network, &[0.3, 0.6, 1.0], &settings, &mut |_| true).unwrap();
     assert_eq!(path.whole_status, Status::Complete);
@@ -317,7 +325,9 @@ fn accuracy_asked_is_accuracy_got_and_pieces_do_not_matter() {
         let network = Network {
             nodes: (0..=pieces).map(|i| node(place(i), support(i))).collect(),
             beams: (0..pieces).map(|i| rigid(i, i + 1, Shape::new(vec![0.0], length).unwrap(), UNIT)).collect(),
-            drive: Drive::Force { node: pieces, direction: [-cos, sin] }, before: Vec::new() };
+            drive: Drive::Force { node: pieces, direction: [-cos, sin] },
+            before: Vec::new(),
+        };
         let settings = Settings { theory: Theory::Inextensible, accuracy, ..Settings::default() };
         let path = trace(&network, &[load], &settings, &mut |_| true).unwrap();
         assert!(path.status.is_complete());

@@ -205,7 +205,12 @@ fn moved(network: &Network, angle: f64, mirror: bool, shift: [f64; 2], reverse: 
         beams.swap(1, 3);
     }
     let Drive::Displacement { node, direction } = network.drive else { panic!("another drive") };
-    Network { nodes, beams, drive: Drive::Displacement { node: place(node), direction: turned(direction, angle, mirror) }, before: Vec::new() }
+    Network {
+        nodes,
+        beams,
+        drive: Drive::Displacement { node: place(node), direction: turned(direction, angle, mirror) },
+        before: Vec::new(),
+    }
 }
 
 #[test]
@@ -322,7 +327,9 @@ fn truss() -> Network {
     Network {
         nodes: vec![node(places[0], Support::Pinned), node(places[1], Support::Pinned), node(places[2], Support::Free)],
         beams: vec![beam(0), beam(1)],
-        drive: Drive::Displacement { node: 2, direction: [0.0, -1.0] }, before: Vec::new() }
+        drive: Drive::Displacement { node: 2, direction: [0.0, -1.0] },
+        before: Vec::new(),
+    }
 }
 
 #[test]
@@ -434,7 +441,9 @@ fn closed_polygon_of_rigid_joints_is_solved() {
     let network = Network {
         nodes: corners.iter().enumerate().map(|(i, p)| node(*p, if i == 0 { Support::Clamped } else { Support::Free })).collect(),
         beams: (0..4).map(side).collect(),
-        drive: Drive::Displacement { node: 2, direction: UP }, before: Vec::new() };
+        drive: Drive::Displacement { node: 2, direction: UP },
+        before: Vec::new(),
+    };
     let path = solve(&network, &[0.0, 0.01], &elastica());
     // Each side is guided at both ends (corners keep their angle) and bent by P/(2√2) across it: P/δ = 2·12 EI/L³.
     let length = s * 2.0_f64.sqrt();

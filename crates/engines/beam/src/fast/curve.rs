@@ -7,9 +7,9 @@ use super::lanes::{LANES, Lane};
 use super::network::{Net, add_scaled};
 use super::stencil::Stencil;
 use super::stress::{Sampling, Scratch, Slopes};
-use crate::model::Model;
 use crate::counters::Counters;
 use crate::error::{NetworkError, Status};
+use crate::model::Model;
 use crate::network::{Drive, Joints, Network, Settings};
 use crate::path::{check_stations, trace};
 

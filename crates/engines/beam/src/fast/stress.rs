@@ -7,8 +7,8 @@ use forcewright_base::maths;
 use super::kernel::{EXTRA, Unknowns};
 use super::lanes::{LANES, Lane};
 use super::network::add_scaled;
-use crate::model::Model;
 use crate::element::root_of;
+use crate::model::Model;
 
 /// Beams whose coarse maximum is at least this part of the largest are looked at closely.
 const CLOSE: f64 = 0.98;

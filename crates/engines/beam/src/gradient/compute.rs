@@ -4,12 +4,13 @@ use super::{
     Axis, Gradient, GradientError, Output,
     closure::ChordSensitivity,
     field::{self, BeamRhs, Field, Sensitivity},
-    seed::{Seed, polished_place},
+    seed::{Seed, polished_place, position_slope, stress_slope},
 };
 use crate::{
     assembly::{Resolution, System},
     counters::Counters,
     model::{Model, swing},
+    network::is_zero,
     overlap::Zones,
     path::Path,
     state::{BeamState, Face, Point},
@@ -110,8 +111,7 @@ impl Path {
         for (beam, (_, line)) in model.spans.iter().enumerate() {
             closures.push(line.shape.chord_sensitivity().map_err(|_| GradientError::ClosedLoop { beam })?);
         }
-        let mut gradients =
-            Gradients { model, zones: self.zones(), stage: Stage::new(model, resolution), closures, origins: Vec::new() };
+        let mut gradients = Gradients { model, zones: self.zones(), stage: Stage::new(model, resolution), closures, origins: Vec::new() };
         gradients.find_origins(&self.before, resolution)?;
         Ok(gradients)
     }
@@ -246,8 +246,11 @@ impl<'p> Gradients<'p> {
             Output::Displacement => parts.unit = model.displacement_unit(),
             Output::Stiffness => self.add_stiffness(&mut parts, fields, state),
             Output::Stress { beam, u, face } => {
-                let (piece, _, v) = point.beams[beam].piece_at(u);
+                let (piece, inner, v) = point.beams[beam].piece_at(u);
                 self.add_stress(&mut parts, &point.beams[beam], fields, (beam, piece, v, face, 1.0));
+                let index = model.spans[beam].0.start + piece;
+                let slope = stress_slope(inner, v, face, fields[index].constants.axial > 0.0);
+                parts.design.pieces[index].add_sliding(&fields[index].info.range, u, slope);
             }
             Output::PeakStress { beam } => {
                 let beam = beam.or_else(|| point.peak_stress().map(|p| p.0)).unwrap_or(0);
@@ -287,7 +290,7 @@ impl<'p> Gradients<'p> {
         parts.design.shift[first.nodes[0]] = axis;
         self.add_translation(parts, first.nodes[0], axis);
         let (arm, turn) = (first.arms[0], model.nodes[first.nodes[0]].rotation);
-        if arm != [0.0; 2] {
+        if !is_zero(arm) {
             let moved = swing(arm, Model::rotation(turn, state));
             let now = [arm[0] + moved[0], arm[1] + moved[1]];
             if let Some(place) = turn {
@@ -303,6 +306,9 @@ impl<'p> Gradients<'p> {
             seed.add_position(if number == last { v } else { 1.0 }, axis);
             self.take(parts, index, seed.close());
         }
+        let index = span.start + last;
+        let slope = position_slope(&fields[index], &point.beams[beam].pieces()[last], v, axis);
+        parts.design.pieces[index].add_sliding(&fields[index].info.range, u, slope);
     }
 
     fn add_stress(&self, parts: &mut Dependence, state: &BeamState, fields: &[Field], at: (usize, usize, f64, Face, f64)) {

@@ -3,10 +3,7 @@
 use forcewright_base::{maths, quadrature::GaussLegendre};
 
 use super::{BeamGradient, Gradient, compute::Design, compute::Gradients};
-use crate::{
-    model::BeamModel,
-    state::BeamLine,
-};
+use crate::{model::BeamModel, state::BeamLine};
 
 /// Derivatives by one beam while they are collected, SI.
 struct Collected {

@@ -100,6 +100,15 @@ impl Sensitivity {
         }
     }
 
+    /// A place fixed on the beam slides along the piece when its ends move.
+    pub(super) fn add_sliding(&mut self, [from, to]: &[f64; 2], u: f64, slope: f64) {
+        if u > *from && u < *to {
+            let v = (u - from) / (to - from);
+            self.range[0] -= slope * (1.0 - v) / (to - from);
+            self.range[1] -= slope * v / (to - from);
+        }
+    }
+
     pub(super) fn add(&mut self, other: &Self, factor: f64) {
         for (a, b) in self.angles.iter_mut().zip(&other.angles) {
             *a += factor * b;

@@ -146,30 +146,39 @@ fn direction(state: &PieceState, u: f64) -> [f64; 2] {
     [cos, sin]
 }
 
-/// The place of a largest stress, known to about 1e-6, improved where dσ/du vanishes inside the piece.
-pub(super) fn polished_place(state: &PieceState, u: f64, face: Face, extensible: bool) -> f64 {
+/// dσ/dv on a face at a place of the piece, Pa, from the equation of equilibrium.
+pub(super) fn stress_slope(state: &PieceState, u: f64, face: Face, extensible: bool) -> f64 {
     let info = &state.info;
+    let section = info.section_at(u);
+    let (length, stiffness) = (info.shape.length_m(), section.bending_stiffness_n_m2());
+    let side = if face == Face::Left { -1.0 } else { 1.0 };
+    let thinning = info.thickness_m.map_or(0.0, |[a, b]| b - a) / section.thickness_m;
+    let softness = if extensible { 1.0 / section.axial_stiffness_n() - 1.0 / section.shear_stiffness_n() } else { 0.0 };
+    let (axial, across) = (state.axial_force_n(u), state.shear_force_n(u));
+    let (moment, per_moment) = (state.moment_nm(u), section.face_stress_per_moment_per_m3());
+    // −M' = L q, and the change of 6/(b w²).
+    let bending = -side * (length * (across + softness * axial * across) + 2.0 * moment * thinning) * per_moment;
+    if !extensible {
+        return bending;
+    }
+    let turn = info.shape.slope_at(u) + moment * length / stiffness;
+    bending + (across * turn - axial * thinning) / section.area_m2()
+}
+
+/// d(position)/dv along an axis at a place of the piece, dimensionless; see [`crate::BeamState::shape_m`].
+pub(super) fn position_slope(field: &Field, state: &PieceState, u: f64, axis: [f64; 2]) -> f64 {
+    let (c, force, along) = (field.constants, field.at.force, direction(state, u));
+    let soft = Place::new(field.info, u).soft(&c);
+    let (axial, across) = (dot(force, along), dot(force, turned(along)));
+    c.length * ((1.0 + soft[0] * axial) * dot(axis, along) + soft[1] * across * dot(axis, turned(along)))
+}
+
+/// The place of a largest stress, known to about 1e-6, improved where dσ/dv vanishes inside the piece.
+pub(super) fn polished_place(state: &PieceState, u: f64, face: Face, extensible: bool) -> f64 {
     if u <= 0.0 || u >= 1.0 {
         return u;
     }
-    let length = info.shape.length_m();
-    let side = if face == Face::Left { -1.0 } else { 1.0 };
-    let thickness_slope = info.thickness_m.map_or(0.0, |[a, b]| b - a);
-    let slope = |u: f64| {
-        let section = info.section_at(u);
-        let stiffness = section.bending_stiffness_n_m2();
-        let softness = if extensible { 1.0 / section.axial_stiffness_n() - 1.0 / section.shear_stiffness_n() } else { 0.0 };
-        let (axial, across) = (state.axial_force_n(u), state.shear_force_n(u));
-        let (moment, per_moment) = (state.moment_nm(u), section.face_stress_per_moment_per_m3());
-        // M' and the change of 6/(b w²).
-        let bending = -side * (length * (across + softness * axial * across) + 2.0 * moment * thickness_slope / section.thickness_m) * per_moment;
-        let turn = info.shape.slope_at(u) + moment * length / stiffness;
-        if extensible {
-            bending + (across * turn - axial * thickness_slope / section.thickness_m) / section.area_m2()
-        } else {
-            bending
-        }
-    };
+    let slope = |u: f64| stress_slope(state, u, face, extensible);
     let (mut before, mut here) = (u, if u < 0.5 { u + 1e-4 } else { u - 1e-4 });
     let (mut slope_before, mut slope_here) = (slope(before), slope(here));
     for _ in 0..6 {

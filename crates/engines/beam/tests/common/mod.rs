@@ -31,7 +31,7 @@ pub(crate) fn solve(network: &Network, stations: &[f64], settings: &Settings) ->
 }
 
 pub(crate) fn rigid(start: usize, end: usize, shape: Shape, section: Section) -> Beam {
-    Beam { start, end, shape, section, start_joint: Joint::Rigid, end_joint: Joint::Rigid , arms_m: [[0.0; 2]; 2], profile: Vec::new() }
+    Beam { start, end, shape, section, start_joint: Joint::Rigid, end_joint: Joint::Rigid, arms_m: [[0.0; 2]; 2], profile: Vec::new() }
 }
 
 pub(crate) fn node(position_m: [f64; 2], support: Support) -> Node {
@@ -52,7 +52,9 @@ pub(crate) fn half_mechanism(nodes_m: [[f64; 2]; 5], shapes: [Shape; 4], section
             node(nodes_m[4], VERTICAL_GUIDE),
         ],
         beams: vec![rigid(0, 2, a, section), rigid(1, 2, b, section), rigid(2, 3, c, section), rigid(3, 4, d, section)],
-        drive: Drive::Displacement { node: 4, direction: [0.0, -1.0] }, before: Vec::new() }
+        drive: Drive::Displacement { node: 4, direction: [0.0, -1.0] },
+        before: Vec::new(),
+    }
 }
 
 /// Table 3 with the printed shapes and lengths; the nodes follow from `n_1`.
@@ -86,7 +88,9 @@ pub(crate) fn cantilever(length_m: f64, angle_rad: f64, section: Section, suppor
     Network {
         nodes: vec![node([0.0, 0.0], Support::Clamped), node(shape.chord_m(), support)],
         beams: vec![rigid(0, 1, shape, section)],
-        drive, before: Vec::new() }
+        drive,
+        before: Vec::new(),
+    }
 }
 
 #[track_caller]
