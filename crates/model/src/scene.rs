@@ -24,6 +24,8 @@ pub enum SupportKind {
     Clamped,
     /// Position fixed, free to rotate.
     Pinned,
+    /// Free to move in any direction, rotation fixed.
+    Parallel,
     /// Free to move along a direction (unit vector); rotation fixed or free.
     Slider {
         /// Direction of motion.

@@ -138,6 +138,7 @@ impl Artist<'_> {
                 Support::Free => continue,
                 Support::Clamped => SupportKind::Clamped,
                 Support::Pinned => SupportKind::Pinned,
+                Support::Parallel => SupportKind::Parallel,
                 Support::Slider { direction, rotation } => SupportKind::Slider { direction, rotates: rotation == Rotation::Free },
             };
             let outward = self.outward(index);

@@ -29,6 +29,9 @@ fn unit(v: [f64; 2], usual: [f64; 2]) -> [f64; 2] {
 
 /// Draws a support; `size` is the half-length of its ground line. Returns the box that it covers.
 pub(super) fn support(canvas: &mut Canvas, at: [f64; 2], kind: SupportKind, outward: [f64; 2], size: f64) -> Rect {
+    if kind == SupportKind::Parallel {
+        return parallel_guide(canvas, at, size);
+    }
     let out = unit(outward, [0.0, 1.0]);
     let mut local = Local { at, along: [-out[1], out[0]], out };
     if let SupportKind::Slider { direction, .. } = kind {
@@ -40,7 +43,7 @@ pub(super) fn support(canvas: &mut Canvas, at: [f64; 2], kind: SupportKind, outw
     }
     canvas.open(&format!(r#"{} stroke-width="1.6" stroke-linejoin="round""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)));
     let ground = match kind {
-        SupportKind::Clamped => 0.0,
+        SupportKind::Clamped | SupportKind::Parallel => 0.0,
         SupportKind::Pinned => {
             triangle(canvas, &local, size, 1.15 * size);
             1.15 * size
@@ -69,6 +72,27 @@ pub(super) fn support(canvas: &mut Canvas, at: [f64; 2], kind: SupportKind, outw
     let reach = 1.35 * size;
     let corners = [(-reach, -0.3 * size), (reach, -0.3 * size), (reach, ground + 0.5 * size), (-reach, ground + 0.5 * size)];
     around(&corners.map(|(a, o)| local.point(a, o)))
+}
+
+/// A block that goes anywhere without turning: arrows in both directions on a square.
+fn parallel_guide(canvas: &mut Canvas, at: [f64; 2], size: f64) -> Rect {
+    let local = Local { at, along: [1.0, 0.0], out: [0.0, 1.0] };
+    let corners = [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]].map(|[a, o]| local.point(a * size, o * size));
+    canvas.open(&format!(r#"{} stroke-width="1.6" stroke-linejoin="round""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)));
+    canvas.polygon(&corners, "");
+    let mut strokes = Vec::new();
+    for [x, y] in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+        let tip = local.point(0.7 * size * x, 0.7 * size * y);
+        strokes.push([at, tip]);
+        for side in [-1.0, 1.0] {
+            // A head of two strokes.
+            let back = [tip[0] - 0.22 * size * (x + side * y), tip[1] - 0.22 * size * (y - side * x)];
+            strokes.push([tip, back]);
+        }
+    }
+    canvas.segments(&strokes, r#"stroke-width="1.2""#);
+    canvas.close();
+    around(&corners)
 }
 
 fn triangle(canvas: &mut Canvas, local: &Local, half: f64, height: f64) {
