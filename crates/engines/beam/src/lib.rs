@@ -1,16 +1,16 @@
 //! Networks of large-deflection planar beams: equilibrium paths and stress.
 //!
-//! Beams have any smooth shape at rest ([`Shape`]), meet at nodes in rigid joints or hinges ([`Network`]), and are moved by one
-//! [`Drive`]. [`trace`] follows the equilibrium from rest and reports force, stiffness, energy and stress ([`Path`], [`Point`],
-//! [`BeamState`]).
+//! Beams have any smooth shape at rest ([`Shape`]) and meet at nodes, which may be rigid bodies, in rigid joints or hinges ([`Network`]).
+//! One [`Drive`] moves or loads them, after any number of load stages. [`trace`] follows the equilibrium from rest and reports force,
+//! stiffness, energy and stress ([`Path`], [`Point`], [`BeamState`]); [`Path::gradients`] differentiates it; [`CurveSolver`] computes
+//! whole curves fast. Theory: `docs/theory/beam.md`.
 //!
 //! Model: C.-C. Lan, J.-H. Wang, Y.-H. Chen, "A Compliant Constant-Force Mechanism for Adaptive Robot End-Effector Operations",
 //! ICRA 2010, extended by stretching and shear (E. Reissner, ZAMP 23, 1972); [`Theory`] chooses. Departures from the paper:
 //!
 //! - COMP-1: M = EI/L dφ/du. Eq. (4) lacks the 1/L that eq. (5) has; see [`BeamState::moment_nm`].
 //!
-//! Not modelled: contact between beams, self-weight, the extra stiffness of the material where beams meet, plasticity, and buckling
-//! out of the plane.
+//! Not modelled: contact between beams, self-weight, fillets, plasticity, and buckling out of the plane.
 //!
 //! SI units throughout. The same input gives the same bits on every machine.
 

@@ -127,6 +127,12 @@ pub fn trace(
     let mut error_estimate = None;
     let mut level = 0;
     let natural = if settings.follow == Follow::ToEnd { 0.5 } else { 1.0 };
+    // A finer resolution begins anew, but progress never goes back.
+    let mut furthest = 0.0_f64;
+    let mut progress = |fraction: f64| {
+        furthest = furthest.max(fraction);
+        progress(furthest)
+    };
     loop {
         // Half of what is left for each level: the number of levels is not known beforehand.
         let (done, share) = (1.0 - halves(level), halves(level + 1));

@@ -478,3 +478,29 @@ fn impossible_profiles_and_zones_are_refused() {
     assert!(path.whole_status.is_complete(), "{}", path.whole_status);
     assert!(!path.folds.is_empty() && !path.jumps.is_empty());
 }
+
+/// Progress grows through resolutions, load stages and limit points, and can stop each of them.
+#[test]
+fn progress_never_goes_back() {
+    let mut network = table3_by_shapes(POM);
+    network.before = vec![Stage { drive: Drive::Moment { node: 2 }, to: 1e-4 }];
+    network.drive = Drive::Force { node: 4, direction: DOWN };
+    let settings = Settings { follow: Follow::ToEnd, accuracy: 1e-6, ..elastica() };
+    let mut seen: Vec<f64> = Vec::new();
+    let path = trace(&network, &[6.0], &settings, &mut |fraction| {
+        seen.push(fraction);
+        true
+    });
+    assert!(path.expect("a sound network").whole_status.is_complete());
+    assert!(seen.windows(2).all(|p| p[0] <= p[1]) && seen.iter().all(|f| (0.0..=1.0).contains(f)));
+    for last in [0, seen.len() / 3, seen.len() - 2] {
+        let mut count = 0;
+        let stopped = trace(&network, &[6.0], &settings, &mut |_| {
+            count += 1;
+            count <= last
+        });
+        let stopped = stopped.expect("a sound network");
+        let status = if stopped.status.is_complete() { stopped.whole_status } else { stopped.status };
+        assert!(!status.is_complete(), "after {last} of {}", seen.len());
+    }
+}
