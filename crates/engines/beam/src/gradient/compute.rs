@@ -1,7 +1,7 @@
 //! Gradients of outputs at the points of a path.
 
 use super::{
-    Axis, Gradient, GradientError, Output,
+    Gradient, GradientError, Output,
     closure::ChordSensitivity,
     field::{self, BeamRhs, Field, Sensitivity},
     seed::{Seed, polished_place, position_slope, stress_slope},
@@ -260,7 +260,10 @@ impl<'p> Gradients<'p> {
                 let sign = if peak.tension { 1.0 } else { -1.0 };
                 self.add_stress(&mut parts, &point.beams[beam], fields, (beam, piece, v, peak.face, sign));
             }
-            Output::Position { beam, u, axis } => self.add_position(&mut parts, point, fields, state, (beam, u, axis)),
+            Output::Position { beam, u, axis } => {
+                parts.unit = model.length_m;
+                self.add_position(&mut parts, point, fields, state, (beam, u, axis.unit()));
+            }
             Output::NodeDisplacement { node, axis } => {
                 parts.unit = model.length_m;
                 self.add_translation(&mut parts, node, axis.unit());
@@ -280,14 +283,14 @@ impl<'p> Gradients<'p> {
         }
     }
 
-    /// The place on the axis: the start of the beam, all pieces before, and the last piece up to it.
-    fn add_position(&self, parts: &mut Dependence, point: &Point, fields: &[Field], state: &[f64], at: (usize, f64, Axis)) {
-        let (beam, u, axis) = (at.0, at.1, at.2.unit());
+    /// The place on the axis, in units of length along a direction: the start of the beam, all pieces before, and the last piece up to it.
+    fn add_position(&self, parts: &mut Dependence, point: &Point, fields: &[Field], state: &[f64], at: (usize, f64, [f64; 2])) {
+        let (beam, u, axis) = at;
         let model = self.model;
         let span = model.spans[beam].0.clone();
         let first = &model.beams[span.start];
-        parts.unit = model.length_m;
-        parts.design.shift[first.nodes[0]] = axis;
+        let shift = &mut parts.design.shift[first.nodes[0]];
+        *shift = [0, 1].map(|i| shift[i] + axis[i]);
         self.add_translation(parts, first.nodes[0], axis);
         let (arm, turn) = (first.arms[0], model.nodes[first.nodes[0]].rotation);
         if !is_zero(arm) {
@@ -297,7 +300,8 @@ impl<'p> Gradients<'p> {
                 parts.rhs[place] += field::dot(axis, field::turned(now));
             }
             let back = swing(axis, -Model::rotation(turn, state));
-            parts.design.pieces[span.start].arms[0] = [axis[0] + back[0], axis[1] + back[1]];
+            let by_arm = &mut parts.design.pieces[span.start].arms[0];
+            *by_arm = [0, 1].map(|i| by_arm[i] + axis[i] + back[i]);
         }
         let (last, _, v) = point.beams[beam].piece_at(u);
         for (number, piece) in point.beams[beam].pieces().iter().enumerate().take(last + 1) {
