@@ -16,15 +16,12 @@ pub(crate) fn stiffness(system: &System, node: usize) -> Option<[[f64; 3]; 3]> {
     let block: Vec<f64> = others.iter().flat_map(|&row| others.iter().map(move |&column| entry(row, column))).collect();
     let mut lu = Lu::new();
     lu.factor(n, n, &block).ok()?;
-    // Per own motion: how the others answer.
-    let mut answers = Vec::with_capacity(own.len());
-    for &column in &own {
-        let mut answer: Vec<f64> = others.iter().map(|&row| -entry(row, column)).collect();
-        lu.solve(&mut answer);
-        answers.push(answer);
-    }
+    // A column per own motion: how the others answer.
+    let width = own.len();
+    let mut answers: Vec<f64> = others.iter().flat_map(|&row| own.iter().map(move |&column| -entry(row, column))).collect();
+    lu.solve_columns(&mut answers, width);
     let condensed = |i: usize, j: usize| {
-        let sum: f64 = others.iter().zip(&answers[j]).map(|(&column, a)| entry(own[i], column) * a).sum();
+        let sum: f64 = others.iter().zip(answers.chunks_exact(width)).map(|(&column, a)| entry(own[i], column) * a[j]).sum();
         entry(own[i], own[j]) + sum
     };
     // From the directions of the unknowns to x, y and rotation.

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use crate::{
-    assembly::Resolution,
+    assembly::{Resolution, System},
     counters::Counters,
     error::{NetworkError, PathError, Status},
     follow::{Followed, Start, bifurcations, follow},
     model::Model,
     network::{Follow, Joints, Network, Settings},
+    output,
     overlap::Zones,
     stability::{Bifurcation, Fold, Jump},
     state::Point,
@@ -337,6 +338,20 @@ impl Path {
         }
         (self.whole, self.folds, self.jumps) = (followed.whole, followed.folds, followed.jumps);
         self.bifurcations = followed.bifurcations;
+    }
+
+    /// Stiffness of the driven node against small motions (x, y, rotation) at a point of this path, the other nodes as their supports
+    /// and loads hold them: forces (N, N, N·m) per motion (m, m, rad), symmetric; rows of a motion without meaning are 0. Its own support
+    /// and the drive are left out, so a negative eigenvalue is a direction in which the node stays only if something guides it.
+    ///
+    /// `None` where the rest of the network is itself at a limit, or if the point is not of this path. Costs one Newton iteration.
+    pub fn output_stiffness(&self, point: &Point) -> Option<[[f64; 3]; 3]> {
+        if point.state.len() != self.resolution.initial.len() {
+            return None;
+        }
+        let mut system = System::new(&self.model, &self.resolution);
+        system.evaluate(&point.state, point.control / self.model.control_unit()).ok()?;
+        output::stiffness(&system, self.model.driven_node)
     }
 
     /// The exact equilibrium at any control between 0 and [`Path::reach`].

@@ -31,11 +31,6 @@ pub struct Point {
     pub instability: usize,
     /// On which stretch of the path: the number of limit points of the control passed before.
     pub branch: usize,
-    /// Stiffness of the driven node against small motions (x, y, rotation) in its frame, the other nodes as their supports and loads
-    /// hold them: forces (N, N, N·m) per motion (m, m, rad), symmetric; rows of a motion without meaning are 0. Its own support and the
-    /// drive are left out, so a negative eigenvalue is a direction in which the node stays only if something guides it. `None` where the
-    /// rest of the network is itself at a limit.
-    pub output_stiffness: Option<[[f64; 3]; 3]>,
     /// Strain energy, J.
     pub energy_j: f64,
     /// The nodes, in the order of the network.

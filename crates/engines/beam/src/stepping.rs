@@ -6,7 +6,6 @@ use crate::{
     element::recover,
     error::Status,
     model::Model,
-    output,
     state::{BeamState, NodeState, PieceState, Point, Sampling, Solved},
 };
 
@@ -416,7 +415,6 @@ impl<'a> Stepper<'a> {
             displacement,
             force: reaction,
             stiffness: self.system.stiffness(tangent) * model.reaction_unit() / model.displacement_unit(),
-            output_stiffness: output::stiffness(&self.system, model.driven_node),
             instability: self.instability(),
             branch: 0,
             energy_j: energy * force * length,
