@@ -152,6 +152,10 @@ impl Visitor for Words {
     fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {
         no_default(param);
     }
+    fn points(&mut self, param: &Param, most: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        no_default(param);
+        assert!(most > 0, "`{}` can hold no points", param.key);
+    }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         no_default(param);
     }
@@ -177,6 +181,10 @@ impl Visitor for Words {
     }
     fn members(&mut self, param: &Param, _: Form, members: &mut dyn Members) {
         no_default(param);
+        members.prototype(self);
+    }
+    fn tables(&mut self, param: &Param, members: &mut dyn Members) {
+        assert!(param.key == "*" && param.doc.len() > 4 && param.default.is_none() && !param.required, "{param:?}");
         members.prototype(self);
     }
     fn free(&mut self, param: &Param) {
@@ -479,6 +487,8 @@ enum Shape {
     List(Vec<f64>, usize),
     /// One coordinate of a point.
     Point([f64; 2], usize),
+    /// One coordinate of one of several points.
+    Points(Vec<[f64; 2]>, usize),
 }
 
 impl Number {
@@ -487,12 +497,17 @@ impl Number {
         let unit = Unit::si(self.dimension);
         let quantity = |si: f64| if self.dimension == Dimension::Ratio { format!("{si:e}") } else { format!("{si:e} {}", unit.symbol()) };
         let list = |texts: Vec<String>| format!("[{}]", texts.join(", "));
+        let coordinates = |all: &[f64], at: usize| {
+            list(all.iter().enumerate().map(|(i, v)| format!("{:?}", quantity(if i == at { si } else { *v }))).collect())
+        };
         let value = match &self.shape {
             Shape::Quantity => quantity(si),
             Shape::Count => format!("{}", si.round()),
             Shape::List(all, at) => list(all.iter().enumerate().map(|(i, v)| format!("{:e}", if i == *at { si } else { *v })).collect()),
-            Shape::Point(all, at) => {
-                list(all.iter().enumerate().map(|(i, v)| format!("{:?}", quantity(if i == *at { si } else { *v }))).collect())
+            Shape::Point(all, at) => coordinates(all, *at),
+            Shape::Points(all, at) => {
+                let inside = |i: usize| at.checked_sub(2 * i).filter(|k| *k < 2).unwrap_or(2);
+                list(all.iter().enumerate().map(|(i, point)| coordinates(point, inside(i))).collect())
             }
         };
         format!("{}={value}", self.path)
@@ -571,6 +586,13 @@ impl Visitor for Numbers {
             self.note(param, value, Shape::Point(all, at));
         }
     }
+    fn points(&mut self, param: &Param, _: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        let Some(located) = slot else { return };
+        let all: Vec<[f64; 2]> = located.value.iter().map(|p| [p.value[0].si, p.value[1].si]).collect();
+        for (index, value) in all.as_flattened().iter().enumerate() {
+            self.note(param, *value, Shape::Points(all.clone(), index));
+        }
+    }
     fn direction(&mut self, _: &Param, _: &mut Slot<[f64; 2]>) {}
     fn text(&mut self, _: &Param, _: &mut Slot<String>) {}
     fn flag(&mut self, _: &Param, _: &mut Slot<bool>) {}
@@ -582,6 +604,11 @@ impl Visitor for Numbers {
     fn members(&mut self, param: &Param, _: Form, members: &mut dyn Members) {
         for (index, name) in members.names().into_iter().enumerate() {
             self.inside(&format!("{}.{name}", param.key), |collector| members.describe(index, collector));
+        }
+    }
+    fn tables(&mut self, _: &Param, members: &mut dyn Members) {
+        for (index, name) in members.names().into_iter().enumerate() {
+            self.inside(&name, |collector| members.describe(index, collector));
         }
     }
     fn free(&mut self, _: &Param) {}

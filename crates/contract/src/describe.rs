@@ -151,6 +151,8 @@ pub trait Visitor {
     fn numbers(&mut self, param: &Param, slot: &mut Slot<Vec<f64>>);
     /// A point `["x", "y"]` of two quantities.
     fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>);
+    /// Points `[["x", "y"], …]`, at most `most`.
+    fn points(&mut self, param: &Param, most: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>);
     /// A direction `[x, y]` of two bare numbers, not both zero.
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>);
     /// Free text.
@@ -165,6 +167,8 @@ pub trait Visitor {
     fn section(&mut self, param: &Param, present: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor));
     /// Members with names.
     fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members);
+    /// Members that are tables of this table itself, beside its keys; shown last. The key of `param` is `*`.
+    fn tables(&mut self, param: &Param, members: &mut dyn Members);
     /// A table whose content is not described here: it is merged before anything is read.
     fn free(&mut self, param: &Param);
     /// Keys of this table that the language has but this version does not.

@@ -51,6 +51,9 @@ impl Visitor for Keys {
     fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {
         self.note(param);
     }
+    fn points(&mut self, param: &Param, _: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        self.note(param);
+    }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         self.note(param);
     }
@@ -73,6 +76,10 @@ impl Visitor for Keys {
     fn members(&mut self, param: &Param, _: Form, members: &mut dyn Members) {
         self.note(param);
         self.inside(&format!("{}.*", param.key), |lister| members.prototype(lister));
+    }
+    fn tables(&mut self, param: &Param, members: &mut dyn Members) {
+        self.note(param);
+        self.inside(param.key, |lister| members.prototype(lister));
     }
     fn free(&mut self, param: &Param) {
         self.note(param);
@@ -126,6 +133,9 @@ impl Visitor for Rows {
     fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>) {
         self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));
     }
+    fn points(&mut self, param: &Param, _: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        self.note(param, slot.as_ref(), |v| list(v, |p| list(&p.value, ToString::to_string)));
+    }
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>) {
         self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));
     }
@@ -147,6 +157,11 @@ impl Visitor for Rows {
     fn members(&mut self, param: &Param, _: Form, members: &mut dyn Members) {
         for (index, name) in members.names().into_iter().enumerate() {
             self.inside(&format!("{}.{name}", param.key), |lister| members.describe(index, lister));
+        }
+    }
+    fn tables(&mut self, _: &Param, members: &mut dyn Members) {
+        for (index, name) in members.names().into_iter().enumerate() {
+            self.inside(&name, |lister| members.describe(index, lister));
         }
     }
     fn free(&mut self, _: &Param) {}

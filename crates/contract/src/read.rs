@@ -21,6 +21,7 @@ pub fn read<T: Describe + Default>(table: &Table, root: Span, diagnostics: &mut 
         place: root,
         known: Vec::new(),
         missing: Vec::new(),
+        members: Vec::new(),
         reserved: Vec::new(),
         hint: None,
         absent: false,
@@ -68,6 +69,8 @@ struct Reader<'a> {
     table: &'a Table,
     place: Span,
     known: Vec<&'static str>,
+    /// Keys of this table that are names of members.
+    members: Vec<String>,
     missing: Vec<Missing>,
     reserved: Vec<&'static Reserved>,
     /// Said where something is missing from this table.
@@ -134,6 +137,7 @@ impl<'a> Reader<'a> {
             place,
             known: Vec::new(),
             missing: Vec::new(),
+            members: Vec::new(),
             reserved: Vec::new(),
             hint: None,
             absent: false,
@@ -160,7 +164,7 @@ impl<'a> Reader<'a> {
     fn finish(mut self) {
         self.report_missing();
         for entry in &self.table.entries {
-            if self.known.contains(&entry.key.as_str()) {
+            if self.known.contains(&entry.key.as_str()) || self.members.contains(&entry.key) {
                 continue;
             }
             match self.reserved.iter().find(|r| r.key == entry.key) {
@@ -321,6 +325,14 @@ fn wrong_length(item: &Item, wanted: &str, found: usize) -> Box<Diagnostic> {
     )
 }
 
+fn point_of(param: &Param, item: &Item) -> Result<[Quantity; 2], Box<Diagnostic>> {
+    let example = format!("two texts in brackets, such as [\"{0}\", \"{0}\"]", param.dimension.example());
+    match list_of(item, "a point [x, y]", &example)? {
+        [x, y] => Ok([quantity_of(param, x)?, quantity_of(param, y)?]),
+        items => Err(wrong_length(item, "two coordinates", items.len())),
+    }
+}
+
 impl Visitor for Reader<'_> {
     fn quantity(&mut self, param: &Param, slot: &mut Slot<Quantity>) {
         self.fill(param, slot, |item| quantity_of(param, item));
@@ -349,12 +361,17 @@ impl Visitor for Reader<'_> {
     }
 
     fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>) {
+        self.fill(param, slot, |item| point_of(param, item));
+    }
+
+    fn points(&mut self, param: &Param, most: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
         self.fill(param, slot, |item| {
-            let example = format!("two texts in brackets, such as [\"{0}\", \"{0}\"]", param.dimension.example());
-            match list_of(item, "a point [x, y]", &example)? {
-                [x, y] => Ok([quantity_of(param, x)?, quantity_of(param, y)?]),
-                items => Err(wrong_length(item, "two coordinates", items.len())),
+            let example = format!("points in brackets, such as [[\"{0}\", \"{0}\"]]", param.dimension.example());
+            let items = list_of(item, "a list of points [x, y]", &example)?;
+            if items.len() > most {
+                return Err(wrong_length(item, &format!("at most {most} points"), items.len()));
             }
+            items.iter().map(|i| Ok(Located::new(point_of(param, i)?, i.span))).collect()
         });
     }
 
@@ -506,6 +523,20 @@ impl Visitor for Reader<'_> {
             if form == Form::List {
                 inner.known.push("name");
             }
+            inner.finish();
+        }
+    }
+
+    fn tables(&mut self, _: &Param, members: &mut dyn Members) {
+        let stranger = |e: &&Entry| !self.known.contains(&e.key.as_str()) && !self.reserved.iter().any(|r| r.key == e.key);
+        let is_table = |e: &&Entry| matches!(e.item.value, Value::Table(_));
+        let found: Vec<&Entry> = self.table.entries.iter().filter(stranger).filter(is_table).take(MOST_MEMBERS).collect();
+        for (index, entry) in found.into_iter().enumerate() {
+            let Value::Table(table) = &entry.item.value else { continue };
+            self.members.push(entry.key.clone());
+            members.add(Located::new(entry.key.clone(), entry.key_span));
+            let mut inner = self.enter(table, entry.key_span);
+            members.describe(index, &mut inner);
             inner.finish();
         }
     }

@@ -31,11 +31,11 @@ pub fn markdown(design: &mut dyn Describe) -> String {
 }
 
 fn object(body: impl FnOnce(&mut dyn Visitor)) -> Map<String, Value> {
-    let mut schema = Schema { properties: Map::new(), required: Vec::new() };
+    let mut schema = Schema { properties: Map::new(), required: Vec::new(), others: None };
     body(&mut schema);
     let mut out = Map::new();
     out.insert("type".into(), json!("object"));
-    out.insert("additionalProperties".into(), json!(false));
+    out.insert("additionalProperties".into(), schema.others.unwrap_or(json!(false)));
     if !schema.required.is_empty() {
         out.insert("required".into(), json!(schema.required));
     }
@@ -46,6 +46,8 @@ fn object(body: impl FnOnce(&mut dyn Visitor)) -> Map<String, Value> {
 struct Schema {
     properties: Map<String, Value>,
     required: Vec<&'static str>,
+    /// What keys that are not listed hold.
+    others: Option<Value>,
 }
 
 impl Schema {
@@ -101,6 +103,10 @@ impl Visitor for Schema {
     fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {
         self.add(param, json!({ "type": "array", "items": quantity_schema(param), "minItems": 2, "maxItems": 2 }));
     }
+    fn points(&mut self, param: &Param, most: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        let point = json!({ "type": "array", "items": quantity_schema(param), "minItems": 2, "maxItems": 2 });
+        self.add(param, json!({ "type": "array", "items": point, "maxItems": most }));
+    }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         self.add(param, json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 }));
     }
@@ -134,6 +140,11 @@ impl Visitor for Schema {
             }
         };
         self.add(param, schema);
+    }
+    fn tables(&mut self, param: &Param, members: &mut dyn Members) {
+        let mut member = object(|v| members.prototype(v));
+        member.insert("description".into(), json!(param.doc));
+        self.others = Some(Value::Object(member));
     }
     fn free(&mut self, param: &Param) {
         self.add(param, json!({ "type": "object" }));
@@ -195,6 +206,10 @@ impl Visitor for Listing {
         let takes = format!("two of {}, `[\"{1}\", \"{1}\"]`", param.dimension.name(), param.dimension.example());
         self.row(param, &takes);
     }
+    fn points(&mut self, param: &Param, most: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        let takes = format!("at most {most} points of {}, `[[\"{1}\", \"{1}\"]]`", param.dimension.name(), param.dimension.example());
+        self.row(param, &takes);
+    }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         self.row(param, "a direction, `[0, -1]`");
     }
@@ -218,6 +233,10 @@ impl Visitor for Listing {
     fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members) {
         self.row(param, if form == Form::Table { "a table with a key per member" } else { "a list of tables, each with a `name`" });
         self.inside(&format!("{}.*", param.key), |lister| members.prototype(lister));
+    }
+    fn tables(&mut self, param: &Param, members: &mut dyn Members) {
+        self.row(param, "tables with names of your own");
+        self.inside(param.key, |lister| members.prototype(lister));
     }
     fn free(&mut self, param: &Param) {
         self.row(param, "tables of differences");
