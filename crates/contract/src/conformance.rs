@@ -18,7 +18,7 @@ use forcewright_model::{CheckState, Figure, Outcome, ParameterRow, StatusKind};
 use serde_json::Value as Json;
 
 use crate::codes;
-use crate::describe::{Describe, Form, Located, Members, Param, Range, Reserved, Slot, Visitor, Word};
+use crate::describe::{Along, Describe, Form, Located, Members, Param, Range, Reserved, Slot, Visitor, Word, member_path};
 use crate::family::{Entry, Family, Mechanism};
 use crate::project::{Choices, Project};
 use crate::tree::{Item, Table, Value};
@@ -155,6 +155,9 @@ impl Visitor for Words {
     fn points(&mut self, param: &Param, most: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
         no_default(param);
         assert!(most > 0, "`{}` can hold no points", param.key);
+    }
+    fn along(&mut self, param: &Param, most: usize, _: &mut Slot<Along>) {
+        assert!(most >= 2, "`{}` cannot vary", param.key);
     }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         no_default(param);
@@ -593,6 +596,11 @@ impl Visitor for Numbers {
             self.note(param, *value, Shape::Points(all.clone(), index));
         }
     }
+    fn along(&mut self, param: &Param, _: usize, slot: &mut Slot<Along>) {
+        if let Some(Located { value: Along::Constant(quantity), .. }) = slot {
+            self.note(param, quantity.si, Shape::Quantity);
+        }
+    }
     fn direction(&mut self, _: &Param, _: &mut Slot<[f64; 2]>) {}
     fn text(&mut self, _: &Param, _: &mut Slot<String>) {}
     fn flag(&mut self, _: &Param, _: &mut Slot<bool>) {}
@@ -603,7 +611,7 @@ impl Visitor for Numbers {
     }
     fn members(&mut self, param: &Param, _: Form, members: &mut dyn Members) {
         for (index, name) in members.names().into_iter().enumerate() {
-            self.inside(&format!("{}.{name}", param.key), |collector| members.describe(index, collector));
+            self.inside(&member_path(param.key, &name), |collector| members.describe(index, collector));
         }
     }
     fn tables(&mut self, _: &Param, members: &mut dyn Members) {

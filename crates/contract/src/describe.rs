@@ -128,6 +128,44 @@ pub enum Form {
     Table,
     /// `[[design.beams]]` with a `name` per member.
     List,
+    /// `[load]`, or `[[load]]` one after the other. A single table has the empty name, the others are numbered from 1.
+    Stages,
+}
+
+/// Where a member is found: `design.beams.b1`, and `load` for a single stage.
+pub fn member_path(key: &str, name: &str) -> String {
+    if name.is_empty() { key.to_owned() } else { format!("{key}.{name}") }
+}
+
+/// A quantity that may vary along something.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Along {
+    /// The same everywhere.
+    Constant(Quantity),
+    /// At places from 0 to 1, linear between them.
+    Places(Vec<(f64, Quantity)>),
+}
+
+impl Along {
+    /// The quantity where it is the same everywhere, or at the first place.
+    pub fn first(&self) -> Option<&Quantity> {
+        match self {
+            Self::Constant(quantity) => Some(quantity),
+            Self::Places(places) => places.first().map(|p| &p.1),
+        }
+    }
+}
+
+impl std::fmt::Display for Along {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Constant(quantity) => quantity.fmt(f),
+            Self::Places(places) => {
+                let shown: Vec<String> = places.iter().map(|(u, q)| format!("[{u}, {q}]")).collect();
+                write!(f, "[{}]", shown.join(", "))
+            }
+        }
+    }
 }
 
 /// A key that the language has but this version does not.
@@ -153,6 +191,8 @@ pub trait Visitor {
     fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>);
     /// Points `[["x", "y"], …]`, at most `most`.
     fn points(&mut self, param: &Param, most: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>);
+    /// A quantity, or pairs `[["0", "1 mm"], ["1", "0.6 mm"]]` of ascending places from 0 to 1 and quantities, at most `most`.
+    fn along(&mut self, param: &Param, most: usize, slot: &mut Slot<Along>);
     /// A direction `[x, y]` of two bare numbers, not both zero.
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>);
     /// Free text.

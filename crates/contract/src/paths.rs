@@ -3,7 +3,7 @@
 use forcewright_base::units::Quantity;
 use forcewright_model::ParameterRow;
 
-use crate::describe::{Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word};
+use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word, member_path};
 
 /// Every path that a description knows, members written as `*`: `design.beams.*.bend`.
 pub fn keys_of(design: &mut dyn Describe) -> Vec<String> {
@@ -54,6 +54,9 @@ impl Visitor for Keys {
     fn points(&mut self, param: &Param, _: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
         self.note(param);
     }
+    fn along(&mut self, param: &Param, _: usize, _: &mut Slot<Along>) {
+        self.note(param);
+    }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         self.note(param);
     }
@@ -73,8 +76,11 @@ impl Visitor for Keys {
         self.note(param);
         self.inside(param.key, |lister| body(lister));
     }
-    fn members(&mut self, param: &Param, _: Form, members: &mut dyn Members) {
+    fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members) {
         self.note(param);
+        if form == Form::Stages {
+            self.inside(param.key, |lister| members.prototype(lister));
+        }
         self.inside(&format!("{}.*", param.key), |lister| members.prototype(lister));
     }
     fn tables(&mut self, param: &Param, members: &mut dyn Members) {
@@ -136,6 +142,9 @@ impl Visitor for Rows {
     fn points(&mut self, param: &Param, _: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
         self.note(param, slot.as_ref(), |v| list(v, |p| list(&p.value, ToString::to_string)));
     }
+    fn along(&mut self, param: &Param, _: usize, slot: &mut Slot<Along>) {
+        self.note(param, slot.as_ref(), ToString::to_string);
+    }
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>) {
         self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));
     }
@@ -156,7 +165,7 @@ impl Visitor for Rows {
     }
     fn members(&mut self, param: &Param, _: Form, members: &mut dyn Members) {
         for (index, name) in members.names().into_iter().enumerate() {
-            self.inside(&format!("{}.{name}", param.key), |lister| members.describe(index, lister));
+            self.inside(&member_path(param.key, &name), |lister| members.describe(index, lister));
         }
     }
     fn tables(&mut self, _: &Param, members: &mut dyn Members) {

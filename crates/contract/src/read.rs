@@ -4,7 +4,7 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics, MOST_SHOWN, Span};
 use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit, format_number, format_si};
 
-use crate::describe::{Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word};
+use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word};
 use crate::paths;
 use crate::tree::{Entry, Item, Table, Value};
 
@@ -333,6 +333,31 @@ fn point_of(param: &Param, item: &Item) -> Result<[Quantity; 2], Box<Diagnostic>
     }
 }
 
+/// Pairs of place and value along something, from 0 to 1.
+fn places_of(param: &Param, items: &[Item]) -> Result<Vec<(f64, Quantity)>, Box<Diagnostic>> {
+    let example = format!("pairs such as [\"0.5\", \"{}\"]", param.dimension.example());
+    let place = Param::new("place", "Place along it.").within(0.0, 1.0);
+    let mut places: Vec<(f64, Quantity)> = Vec::with_capacity(items.len());
+    for (index, item) in items.iter().enumerate() {
+        let [at, value] = list_of(item, "a pair of place and value", &example)? else {
+            return Err(wrong_length(item, "a place and a value", list_of(item, "a pair", &example)?.len()));
+        };
+        let u = quantity_of(&place, at)?.si;
+        let rule = match (index, places.last()) {
+            (0, _) if u > 0.0 => Some("the first place must be 0"),
+            (_, Some((before, _))) if u <= *before => Some("places must ascend"),
+            _ if index + 1 == items.len() && u < 1.0 => Some("the last place must be 1"),
+            _ => None,
+        };
+        if let Some(rule) = rule {
+            let help = "give the value from one end to the other: [[\"0\", …], [\"0.5\", …], [\"1\", …]]";
+            return Err(Box::new(Diagnostic::error("E0204", at.span, rule).label("this place").help(help)));
+        }
+        places.push((u, quantity_of(param, value)?));
+    }
+    Ok(places)
+}
+
 impl Visitor for Reader<'_> {
     fn quantity(&mut self, param: &Param, slot: &mut Slot<Quantity>) {
         self.fill(param, slot, |item| quantity_of(param, item));
@@ -372,6 +397,14 @@ impl Visitor for Reader<'_> {
                 return Err(wrong_length(item, &format!("at most {most} points"), items.len()));
             }
             items.iter().map(|i| Ok(Located::new(point_of(param, i)?, i.span))).collect()
+        });
+    }
+
+    fn along(&mut self, param: &Param, most: usize, slot: &mut Slot<Along>) {
+        self.fill(param, slot, |item| match &item.value {
+            Value::List(items) if (2..=most).contains(&items.len()) => places_of(param, items).map(Along::Places),
+            Value::List(items) => Err(wrong_length(item, &format!("2 to {most} pairs of place and value"), items.len())),
+            _ => quantity_of(param, item).map(Along::Constant),
         });
     }
 
@@ -478,6 +511,7 @@ impl Visitor for Reader<'_> {
     fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members) {
         let Some(entry) = self.entry(param) else { return };
         let count = match &entry.item.value {
+            Value::Table(_) if form == Form::Stages => 1,
             Value::Table(table) => table.entries.len(),
             Value::List(items) => items.len(),
             _ => 0,
@@ -492,13 +526,20 @@ impl Visitor for Reader<'_> {
         let found: Vec<(Located<String>, Table, Span)> = match (&entry.item.value, form) {
             (Value::Refused, _) => return,
             (Value::Table(table), Form::Table) => self.table_members(table, param),
-            (Value::List(items), Form::List) => self.list_members(items),
+            (Value::List(items), Form::List | Form::Stages) => self.list_members(items),
+            (Value::Table(table), Form::Stages) => {
+                vec![(Located::new(String::new(), entry.key_span), table.clone(), entry.key_span)]
+            }
             (_, Form::Table) => {
                 return self.push(*wrong_type(
                     &entry.item,
                     "a table with a key per member",
                     &format!("`[… {}]` with `name = {{ … }}`", param.key),
                 ));
+            }
+            (_, Form::Stages) => {
+                let how = format!("`[{0}]`, or `[[{0}]]` one after the other", param.key);
+                return self.push(*wrong_type(&entry.item, "a table or a list of tables", &how));
             }
             (_, Form::List) => {
                 return self.push(*wrong_type(&entry.item, "a list of tables", &format!("`[[… {}]]` with a `name` each", param.key)));

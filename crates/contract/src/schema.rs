@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use forcewright_base::units::{Dimension, Quantity, Unit, format_si};
 use serde_json::{Map, Value, json};
 
-use crate::describe::{Describe, Form, Located, Members, Param, Reserved, Slot, Visitor, Word};
+use crate::describe::{Along, Describe, Form, Located, Members, Param, Reserved, Slot, Visitor, Word};
 
 /// JSON schema (draft 2020-12) of a description.
 pub fn json_schema(id: &str, title: &str, design: &mut dyn Describe) -> Value {
@@ -107,6 +107,11 @@ impl Visitor for Schema {
         let point = json!({ "type": "array", "items": quantity_schema(param), "minItems": 2, "maxItems": 2 });
         self.add(param, json!({ "type": "array", "items": point, "maxItems": most }));
     }
+    fn along(&mut self, param: &Param, most: usize, _: &mut Slot<Along>) {
+        let pair = json!({ "type": "array", "prefixItems": [{ "type": ["string", "number"] }, quantity_schema(param)], "minItems": 2, "maxItems": 2 });
+        let places = json!({ "type": "array", "items": pair, "minItems": 2, "maxItems": most });
+        self.add(param, json!({ "anyOf": [quantity_schema(param), places] }));
+    }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         self.add(param, json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 }));
     }
@@ -130,6 +135,7 @@ impl Visitor for Schema {
         let mut member = object(|v| members.prototype(v));
         let schema = match form {
             Form::Table => json!({ "type": "object", "additionalProperties": member }),
+            Form::Stages => json!({ "anyOf": [member, { "type": "array", "items": member, "minItems": 1 }] }),
             Form::List => {
                 if let Some(Value::Object(properties)) = member.get_mut("properties") {
                     properties
@@ -210,6 +216,12 @@ impl Visitor for Listing {
         let takes = format!("at most {most} points of {}, `[[\"{1}\", \"{1}\"]]`", param.dimension.name(), param.dimension.example());
         self.row(param, &takes);
     }
+    fn along(&mut self, param: &Param, most: usize, _: &mut Slot<Along>) {
+        let (name, example) = (param.dimension.name(), param.dimension.example());
+        let takes =
+            format!("{name}, `\"{example}\"`; or at 2 to {most} places from 0 to 1, `[[\"0\", \"{example}\"], [\"1\", \"{example}\"]]`");
+        self.row(param, &takes);
+    }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         self.row(param, "a direction, `[0, -1]`");
     }
@@ -231,8 +243,14 @@ impl Visitor for Listing {
         self.inside(param.key, |lister| body(lister));
     }
     fn members(&mut self, param: &Param, form: Form, members: &mut dyn Members) {
-        self.row(param, if form == Form::Table { "a table with a key per member" } else { "a list of tables, each with a `name`" });
-        self.inside(&format!("{}.*", param.key), |lister| members.prototype(lister));
+        let takes = match form {
+            Form::Table => "a table with a key per member",
+            Form::List => "a list of tables, each with a `name`",
+            Form::Stages => "a table, or a list of tables carried out in order (`[[…]]`, paths then count from 1)",
+        };
+        self.row(param, takes);
+        let part = if form == Form::Stages { param.key.to_owned() } else { format!("{}.*", param.key) };
+        self.inside(&part, |lister| members.prototype(lister));
     }
     fn tables(&mut self, param: &Param, members: &mut dyn Members) {
         self.row(param, "tables with names of your own");

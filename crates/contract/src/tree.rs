@@ -89,7 +89,7 @@ impl Table {
         Some(self.entries.remove(at))
     }
 
-    /// Lays another table over this one: tables merge key by key, lists of named tables merge name by name, everything else is
+    /// Lays another table over this one: tables merge key by key, lists of named tables merge name by name, others by place, everything else is
     /// replaced. The other wins.
     pub fn overlay(&mut self, other: Self) {
         // Searched by an index: files of a hundred thousand keys are hostile, but must not take for ever.
@@ -143,6 +143,22 @@ fn merge(mine: &mut Entry, theirs: Entry) {
             }));
             return;
         }
+        // `load.2.travel = …`: members without names by their place.
+        (Value::List(base), Value::Table(over)) if numbered(base) => {
+            let mut strangers = Table::default();
+            for entry in over.entries {
+                let at = entry.key.parse::<usize>().ok().and_then(|n| n.checked_sub(1)).filter(|at| *at < base.len());
+                match (at, entry.item.value) {
+                    (Some(at), Value::Table(table)) => overlay_item(&mut base[at], table),
+                    (_, value) => strangers.entries.push(Entry { item: Item { value, ..entry.item }, ..entry }),
+                }
+            }
+            // What has no place in the list becomes a new member: the reader says what it lacks, at this place.
+            if let Some(first) = strangers.entries.first() {
+                base.push(Item { span: first.key_span, value: Value::Table(strangers) });
+            }
+            return;
+        }
         (_, other) => other,
     };
     mine.key_span = theirs.key_span;
@@ -157,6 +173,10 @@ fn overlay_item(item: &mut Item, over: Table) {
 
 fn named(list: &[Item]) -> bool {
     !list.is_empty() && list.iter().all(|item| name_of(item).is_some())
+}
+
+fn numbered(list: &[Item]) -> bool {
+    !list.is_empty() && list.iter().all(|item| matches!(item.value, Value::Table(_)) && name_of(item).is_none())
 }
 
 fn name_of(item: &Item) -> Option<&str> {

@@ -2,4 +2,5 @@
 
 mod merging;
 mod places;
+mod stages;
 mod toy;

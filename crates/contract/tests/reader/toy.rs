@@ -5,7 +5,7 @@ use std::path::Path;
 
 use forcewright_base::diagnostics::{Diagnostics, Severity};
 use forcewright_base::units::{Dimension, Quantity};
-use forcewright_contract::describe::{Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
+use forcewright_contract::describe::{Along, Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
 use forcewright_contract::project::{Choices, FileError, Files, Project};
 use forcewright_contract::{paths, read};
@@ -15,6 +15,13 @@ use forcewright_contract::{paths, read};
 pub(crate) struct Toy {
     header: Header,
     pub(crate) design: Section<Design>,
+    pub(crate) load: Vec<Member<Load>>,
+}
+
+/// A member written as the only table, or in a list one after the other.
+#[derive(Default)]
+pub(crate) struct Load {
+    travel: Slot<Quantity>,
 }
 
 /// `[design]`
@@ -25,6 +32,7 @@ pub(crate) struct Design {
     friction: Slot<Quantity>,
     force: Slot<Quantity>,
     copies: Slot<u32>,
+    width: Slot<Along>,
     nodes: Vec<Member<Node>>,
     beams: Vec<Member<Beam>>,
 }
@@ -56,6 +64,7 @@ impl Describe for Toy {
     fn describe(&mut self, v: &mut dyn Visitor) {
         self.header.describe(v);
         self.design.describe(v, &Param::new("design", "The design.").required());
+        v.members(&Param::new("load", "Loads."), Form::Stages, &mut self.load);
         v.reserved(RESERVED);
     }
 }
@@ -68,8 +77,15 @@ impl Describe for Design {
         v.quantity(&Param::new("friction", "Coefficient of friction.").within(0.0, 1.0), &mut self.friction);
         v.quantity(&Param::new("force", "A force.").of(Dimension::Force), &mut self.force);
         v.count(&Param::new("copies", "Copies.").within(1.0, 8.0), &mut self.copies);
+        v.along(&length("width", "Width."), 3, &mut self.width);
         v.members(&Param::new("nodes", "Nodes."), Form::Table, &mut self.nodes);
         v.members(&Param::new("beams", "Beams."), Form::List, &mut self.beams);
+    }
+}
+
+impl Describe for Load {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.quantity(&Param::new("travel", "How far.").of(Dimension::Length).above(0.0, 1.0).required(), &mut self.travel);
     }
 }
 
