@@ -6,7 +6,7 @@ use forcewright::contract::family::Mechanism;
 use forcewright::contract::project::Project;
 use forcewright::contract::read;
 use forcewright::{Choices, Loaded, gallery};
-use forcewright_beam::{CurveSolver, Settings, Theory, trace};
+use forcewright_beam::{CurveSolver, Network, Parameter, Settings, Shape, Support, Theory, trace};
 
 fn main() {
     divan::main();
@@ -74,6 +74,53 @@ fn fast_inextensible_34_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
 #[divan::bench(args = ACCURACIES, sample_count = 200)]
 fn fast_reissner_34_stations(bencher: Bencher<'_, '_>, accuracy: f64) {
     curve(bencher, Theory::Reissner, accuracy);
+}
+
+/// The same curve at 1e-3 with the gradient of the force by 13 parameters: two nodes, both bends of four beams, the thickness.
+#[divan::bench(args = [Theory::Inextensible, Theory::Reissner], sample_count = 200)]
+fn fast_gradient_34x13(bencher: Bencher<'_, '_>, theory: Theory) {
+    let design = design();
+    let stations: Vec<f64> = (0..34).map(|i| 13.6e-3 * f64::from(i) / 33.0).collect();
+    let settings = Settings { theory, accuracy: 1e-3, ..Settings::default() };
+    let mut parameters = vec![Parameter::NodeX(2), Parameter::NodeY(2), Parameter::NodeX(3), Parameter::NodeY(3), Parameter::AllThickness];
+    parameters.extend((0..4).flat_map(|beam| [1, 2].map(|k| Parameter::Bend { beam, k })));
+    let mut solver = CurveSolver::new();
+    bencher.bench_local(|| {
+        solver.solve_with_gradient(black_box(&design.network), &stations, &settings, &parameters).map(|r| r.force_gradient.len())
+    });
+}
+
+/// A hundred different designs at 1e-4, one after another: inner nodes within 2 mm and bends within 0.5 rad of the example's.
+#[divan::bench(sample_count = 30)]
+fn batch_1e4(bencher: Bencher<'_, '_>) {
+    let design = design();
+    let stations: Vec<f64> = (0..34).map(|i| 13.6e-3 * f64::from(i) / 33.0).collect();
+    let settings = Settings { theory: Theory::Inextensible, accuracy: 1e-4, ..Settings::default() };
+    let networks: Vec<Network> = (0..100).map(|index| variant(&design.network, index)).collect();
+    let mut solver = CurveSolver::new();
+    bencher.counter(divan::counter::ItemsCount::new(networks.len())).bench_local(|| {
+        let force = |n: &Network| solver.solve(black_box(n), &stations, &settings).map_or(0.0, |r| r.force_n[33] + r.stress_pa[33]);
+        networks.iter().map(force).sum::<f64>()
+    });
+}
+
+/// A network with its free nodes and bends moved by amounts spread evenly over their ranges (additive recurrence with the golden ratio).
+fn variant(network: &Network, index: u32) -> Network {
+    let mut new = network.clone();
+    let mut count = f64::from(index) * 17.0;
+    let mut amount = |range: f64| {
+        count += 1.0;
+        range * (2.0 * (0.618_033_988_749_895 * count).fract() - 1.0)
+    };
+    for node in new.nodes.iter_mut().filter(|n| n.support == Support::Free) {
+        node.position_m = node.position_m.map(|x| x + amount(2e-3));
+    }
+    for beam in &mut new.beams {
+        let ([x, y], [from_x, from_y]) = (new.nodes[beam.end].position_m, new.nodes[beam.start].position_m);
+        let bends: Vec<f64> = beam.shape.angle_rad()[1..].iter().map(|c| c + amount(0.5)).collect();
+        beam.shape = Shape::from_chord([x - from_x, y - from_y], &bends).expect("mild bends span their chords");
+    }
+    new
 }
 
 /// Path at the stations of a report, with the refinement of the interpolation.

@@ -17,35 +17,73 @@ const SMALL_FLEXIBILITY: f64 = 1e-9;
 /// Smallest flexibility relative to L³/EI.
 const STIFF: f64 = 1e-12;
 
-/// Trial functions with `M` bubbles (degree `M + 1`) at `Q` quadrature points.
+/// Trial functions with `M` bubbles (degree `M + 1`) at `Q` quadrature points. `E = Q − M` is the number of modes beyond those solved
+/// for that one sweep through the moment equation adds: stress is a derivative and needs them.
 #[derive(Debug)]
-pub(crate) struct Tables<const M: usize, const Q: usize> {
+pub(crate) struct Tables<const M: usize, const Q: usize, const E: usize> {
     pub(crate) u: [f64; Q],
     pub(crate) weight: [f64; Q],
-    bubble: [[f64; Q]; M],
-    /// Legendre polynomials of degree M … M + EXTRA + 1, for the modes beyond those solved for.
-    legendre: [[f64; Q]; EXTRA + 2],
+    place: [Lane; Q],
+    bubble: [[Lane; Q]; M],
+    /// Legendre polynomials of degree M … Q − 1. That of degree Q is 0 at the points; later ones are beyond the interpolation.
+    legendre: [[Lane; Q]; E],
+    /// Half of 1/√(2k − 1) of the modes beyond.
+    half_root: [f64; E],
 }
 
-/// Modes beyond those solved for, which one sweep through the moment equation adds: stress is a derivative and needs them.
-pub(crate) const EXTRA: usize = 3;
-
-impl<const M: usize, const Q: usize> Tables<M, Q> {
+impl<const M: usize, const Q: usize, const E: usize> Tables<M, Q, E> {
     pub(crate) fn new() -> Self {
+        const { assert!(M + E == Q) };
         let rule = GaussLegendre::new(Q);
-        let mut tables = Self { u: [0.0; Q], weight: [0.0; Q], bubble: [[0.0; Q]; M], legendre: [[0.0; Q]; EXTRA + 2] };
-        let mut p = vec![0.0; M + EXTRA + 2];
+        let zero = Lane::ZERO;
+        let mut tables = Self {
+            u: [0.0; Q],
+            weight: [0.0; Q],
+            place: [zero; Q],
+            bubble: [[zero; Q]; M],
+            legendre: [[zero; Q]; E],
+            half_root: std::array::from_fn(|k| 0.5 / root_of(M + 2 + k)),
+        };
+        let mut p = vec![0.0; Q + 2];
         for (q, (u, w)) in rule.nodes().iter().zip(rule.weights()).enumerate() {
             (tables.u[q], tables.weight[q]) = (*u, *w);
+            tables.place[q] = Lane::splat(*u);
             legendre_values(2.0 * u - 1.0, &mut p);
             for k in 0..M {
-                tables.bubble[k][q] = (p[k + 2] - p[k]) / (2.0 * root_of(k + 2));
+                tables.bubble[k][q] = Lane::splat((p[k + 2] - p[k]) / (2.0 * root_of(k + 2)));
             }
             for (j, row) in tables.legendre.iter_mut().enumerate() {
-                row[q] = p[M + j];
+                row[q] = Lane::splat(p[M + j]);
             }
         }
         tables
+    }
+
+    /// Rotation of the sections at the quadrature points.
+    #[inline]
+    fn rotation(&self, at: &Unknowns<M>, q: usize) -> Lane {
+        let mut phi = at.ends[0] + (at.ends[1] - at.ends[0]) * self.place[q];
+        for k in 0..M {
+            phi += at.bubbles[k] * self.bubble[k][q];
+        }
+        phi
+    }
+
+    /// As `recover` of the general path, for the modes beyond those solved for. `load` carries the weights and −L.
+    #[inline]
+    fn beyond(&self, bending: Lane, load: &[Lane; Q]) -> [Lane; E] {
+        let mut moments = [Lane::ZERO; E];
+        for (sum, row) in moments.iter_mut().zip(&self.legendre) {
+            for q in 0..Q {
+                *sum += load[q] * row[q];
+            }
+        }
+        let scale = Lane::splat(1.0) / bending;
+        for k in 0..E {
+            let difference = if k + 2 < E { moments[k] - moments[k + 2] } else { moments[k] };
+            moments[k] = difference * scale * self.half_root[k];
+        }
+        moments
     }
 }
 
@@ -61,9 +99,18 @@ pub(crate) struct Beams<const Q: usize> {
     pub(crate) shear: Lane,
     /// Whether any of the four stretches or shears.
     pub(crate) soft: bool,
+    /// Weights of the points, with −L.
+    pub(crate) weight: [Lane; Q],
     /// Direction at rest.
     pub(crate) cos: [Lane; Q],
     pub(crate) sin: [Lane; Q],
+}
+
+impl<const Q: usize> Default for Beams<Q> {
+    fn default() -> Self {
+        let (zero, one) = (Lane::ZERO, Lane::splat(1.0));
+        Self { length: one, bending: one, axial: zero, shear: zero, soft: false, weight: [zero; Q], cos: [zero; Q], sin: [zero; Q] }
+    }
 }
 
 /// Unknowns of four beams.
@@ -80,41 +127,29 @@ impl<const M: usize> Default for Unknowns<M> {
     }
 }
 
+/// Places in [`Condensed::flat`]: second derivatives by (`φ_A`, `φ_B`, x, y), where (x, y) is the position of B relative to A.
+pub(crate) const SECOND: [[usize; 4]; 4] = [[0, 1, 3, 4], [1, 2, 5, 6], [3, 5, 7, 8], [4, 6, 8, 9]];
+/// Places of the first derivatives by the same.
+pub(crate) const FIRST: [usize; 4] = [10, 11, 12, 13];
+
 /// The condensed equations of four beams, and what is needed to find the inner unknowns again.
 #[derive(Clone, Debug)]
-pub(crate) struct Condensed<const M: usize> {
-    /// Second derivatives by (`φ_A`, `φ_B`, `u_A`, `v_A`, `u_B`, `v_B`); of the translations only those of B are stored, A has the
-    /// opposite sign.
-    pub(crate) rotation: [[Lane; 2]; 2],
-    pub(crate) mixed: [[Lane; 2]; 2],
-    pub(crate) translation: [[Lane; 2]; 2],
-    /// First derivatives by (`φ_A`, `φ_B`) and by the position of B.
-    pub(crate) moment: [Lane; 2],
-    pub(crate) pull: [Lane; 2],
-    /// Bubbles' answer to unit (`φ_A`, `φ_B`, H, V) and to their own residual.
-    answer: [[Lane; 5]; M],
+pub(crate) struct Condensed<const M: usize, const Q: usize> {
+    /// Second and first derivatives; see [`SECOND`] and [`FIRST`]. A power of two, so that masked indices need no check.
+    pub(crate) flat: [Lane; 16],
+    /// L·D·Lᵀ of the bubbles: rows of L below the diagonal, 1/D on it.
+    inner: [[Lane; M]; M],
+    /// D⁻¹L⁻¹ of the bubbles' derivatives by (`φ_A`, `φ_B`, H, V) and of their own residual.
+    scaled: [[Lane; 5]; M],
     /// Force's answer: −C⁻¹, C⁻¹·K by rotation, and its own change.
     flexibility: [[Lane; 2]; 2],
     by_rotation: [[Lane; 2]; 2],
     /// C⁻¹ r: what closes the gap.
     closing: [Lane; 2],
-    /// Amplitudes of the modes `M + 2` … from −M' = L q at the state that was linearised.
-    pub(crate) extra: [Lane; EXTRA],
+    /// The integrands at the state that was linearised.
+    pub(crate) points: Points<Q>,
     /// Negative pivots of the bubbles and of the flexibility, per lane.
     pub(crate) negative: [u32; LANES],
-}
-
-/// Sums over the quadrature points.
-struct Integrals<const M: usize> {
-    inner: [[Lane; M]; M],
-    /// Bubbles by `φ_A`, `φ_B`, H, V and their residual.
-    outer: [[Lane; 5]; M],
-    ends: [[Lane; 2]; 2],
-    ends_force: [[Lane; 2]; 2],
-    ends_residual: [Lane; 2],
-    gap: [Lane; 2],
-    compliance: [Lane; 3],
-    extra: [Lane; EXTRA],
 }
 
 /// Why four beams cannot be condensed here.
@@ -125,19 +160,36 @@ pub(crate) struct NeedsPivoting;
 ///
 /// # Errors
 /// [`NeedsPivoting`] near a buckling load of a beam with held ends, and for beams that are straight and inextensible.
-pub(crate) fn linearise<const M: usize, const Q: usize>(
-    tables: &Tables<M, Q>,
+#[inline]
+pub(crate) fn linearise<const M: usize, const Q: usize, const E: usize>(
+    tables: &Tables<M, Q, E>,
     beams: &Beams<Q>,
     at: &Unknowns<M>,
     apart: [Lane; 2],
-    out: &mut Condensed<M>,
+    out: &mut Condensed<M, Q>,
 ) -> Result<(), NeedsPivoting> {
-    let mut integrals = integrate(tables, beams, at);
-    condense(&mut integrals, beams, at, apart, out)
+    evaluate(tables, beams, at, &mut out.points);
+    out.negative = [0; LANES];
+    let mut outer = [[Lane::ZERO; 5]; M];
+    integrate(tables, beams, at, &out.points, &mut out.inner, &mut outer);
+    eliminate(&mut out.inner, &mut outer, &mut out.scaled, beams.bending, &mut out.negative)?;
+    let (mut second, mut first) = ends(tables, beams, at, &out.points);
+    for (left, right) in outer.iter().zip(&out.scaled) {
+        for i in 0..4 {
+            for j in 0..=i {
+                second[i][j] -= left[i] * right[j];
+            }
+            first[i] -= left[i] * right[4];
+        }
+    }
+    first[2] += apart[0];
+    first[3] += apart[1];
+    release(&second, &first, beams, at, out)
 }
 
 /// Integrands at the quadrature points, with the weights and −L, and the sums over them that need no trial function.
-struct AtPoints<const Q: usize> {
+#[derive(Clone, Debug)]
+pub(crate) struct Points<const Q: usize> {
     /// Moment load, its slope by the rotation, and its derivatives by H and V.
     load: [Lane; Q],
     slope: [Lane; Q],
@@ -148,125 +200,123 @@ struct AtPoints<const Q: usize> {
 }
 
 #[inline]
-fn at_points<const M: usize, const Q: usize>(tables: &Tables<M, Q>, beams: &Beams<Q>, at: &Unknowns<M>) -> AtPoints<Q> {
+fn evaluate<const M: usize, const Q: usize, const E: usize>(
+    tables: &Tables<M, Q, E>,
+    beams: &Beams<Q>,
+    at: &Unknowns<M>,
+    out: &mut Points<Q>,
+) {
     let [h, v] = at.force;
-    let turn = at.ends[1] - at.ends[0];
     let softness = beams.axial - beams.shear;
-    let zero = Lane::ZERO;
-    let (mut load, mut slope, mut by_h, mut by_v) = ([zero; Q], [zero; Q], [zero; Q], [zero; Q]);
-    let (mut gap, mut compliance) = ([zero; 2], [zero; 3]);
+    let (mut gap, mut compliance) = ([Lane::ZERO; 2], [Lane::ZERO; 3]);
     for q in 0..Q {
-        let mut phi = at.ends[0] + turn * tables.u[q];
-        for k in 0..M {
-            phi += at.bubbles[k] * tables.bubble[k][q];
-        }
-        let (sin_phi, cos_phi) = phi.sin_cos();
+        let (sin_phi, cos_phi) = tables.rotation(at, q).sin_cos();
         let (rest_cos, rest_sin) = (beams.cos[q], beams.sin[q]);
         let cos = rest_cos * cos_phi - rest_sin * sin_phi;
         let sin = rest_sin * cos_phi + rest_cos * sin_phi;
-        let w = -(beams.length * tables.weight[q]);
+        let w = beams.weight[q];
         let (axial, across) = (h * cos + v * sin, v * cos - h * sin);
-        let (mut q_load, mut q_slope, mut q_h, mut q_v) = (across, -axial, -sin, cos);
         gap[0] += w * (cos - rest_cos);
         gap[1] += w * (sin - rest_sin);
         if beams.soft {
-            q_load += softness * axial * across;
-            q_slope += softness * (across * across - axial * axial);
-            q_h += softness * (cos * across - axial * sin);
-            q_v += softness * (sin * across + axial * cos);
+            let q_load = across + softness * axial * across;
+            let q_slope = softness * (across * across - axial * axial) - axial;
+            let q_h = softness * (cos * across - axial * sin) - sin;
+            let q_v = softness * (sin * across + axial * cos) + cos;
             let (stretch, slide) = (beams.axial * axial, beams.shear * across);
             gap[0] += w * (stretch * cos - slide * sin);
             gap[1] += w * (stretch * sin + slide * cos);
             compliance[0] += w * (beams.axial * cos * cos + beams.shear * sin * sin);
             compliance[1] += w * (softness * sin * cos);
             compliance[2] += w * (beams.axial * sin * sin + beams.shear * cos * cos);
+            (out.load[q], out.slope[q], out.by_h[q], out.by_v[q]) = (w * q_load, w * q_slope, w * q_h, w * q_v);
+        } else {
+            (out.load[q], out.slope[q], out.by_h[q], out.by_v[q]) = (w * across, -(w * axial), -(w * sin), w * cos);
         }
-        load[q] = w * q_load;
-        slope[q] = w * q_slope;
-        by_h[q] = w * q_h;
-        by_v[q] = w * q_v;
     }
-    AtPoints { load, slope, by_h, by_v, gap, compliance }
+    (out.gap, out.compliance) = (gap, compliance);
 }
 
+/// Bubbles by bubbles, lower triangle, and by `φ_A`, `φ_B`, H, V and their residual.
 #[inline]
-fn integrate<const M: usize, const Q: usize>(tables: &Tables<M, Q>, beams: &Beams<Q>, at: &Unknowns<M>) -> Integrals<M> {
-    let AtPoints { load, slope, by_h, by_v, gap, compliance } = at_points(tables, beams, at);
+fn integrate<const M: usize, const Q: usize, const E: usize>(
+    tables: &Tables<M, Q, E>,
+    beams: &Beams<Q>,
+    at: &Unknowns<M>,
+    points: &Points<Q>,
+    inner: &mut [[Lane; M]; M],
+    outer: &mut [[Lane; 5]; M],
+) {
     let zero = Lane::ZERO;
-    let turn = at.ends[1] - at.ends[0];
-    let mut sums = Integrals {
-        inner: [[zero; M]; M],
-        outer: [[zero; 5]; M],
-        ends: [[zero; 2]; 2],
-        ends_force: [[zero; 2]; 2],
-        ends_residual: [zero; 2],
-        gap,
-        compliance,
-        extra: extra_modes(tables, beams, &load),
-    };
+    let mut weighted = [zero; Q];
     for k in 0..M {
         let b = &tables.bubble[k];
-        let mut weighted = [zero; Q];
-        let mut outer = [zero; 5];
+        let (mut all, mut end, mut by_h, mut by_v, mut residual) = (zero, zero, zero, zero, zero);
         for q in 0..Q {
-            let s = slope[q] * b[q];
+            let s = points.slope[q] * b[q];
             weighted[q] = s;
-            outer[1] += s * tables.u[q];
-            outer[0] += s;
-            outer[2] += by_h[q] * b[q];
-            outer[3] += by_v[q] * b[q];
-            outer[4] += load[q] * b[q];
+            all += s;
+            end += s * tables.place[q];
+            by_h += points.by_h[q] * b[q];
+            by_v += points.by_v[q] * b[q];
+            residual += points.load[q] * b[q];
         }
-        outer[0] -= outer[1];
-        outer[4] += beams.bending * at.bubbles[k];
-        sums.outer[k] = outer;
+        outer[k] = [all - end, end, by_h, by_v, residual + beams.bending * at.bubbles[k]];
         for j in 0..=k {
             let other = &tables.bubble[j];
             let mut sum = zero;
             for q in 0..Q {
                 sum += weighted[q] * other[q];
             }
-            sums.inner[k][j] = sum;
+            inner[k][j] = sum;
         }
-        sums.inner[k][k] += beams.bending;
+        inner[k][k] += beams.bending;
     }
+}
+
+/// Second derivatives by (`φ_A`, `φ_B`, H, V), lower triangle, and the first, with the bubbles held.
+#[inline]
+fn ends<const M: usize, const Q: usize, const E: usize>(
+    tables: &Tables<M, Q, E>,
+    beams: &Beams<Q>,
+    at: &Unknowns<M>,
+    points: &Points<Q>,
+) -> ([[Lane; 4]; 4], [Lane; 4]) {
+    let zero = Lane::ZERO;
+    let (mut slope, mut by_h, mut by_v, mut load) = ([zero; 3], [zero; 2], [zero; 2], [zero; 2]);
     for q in 0..Q {
-        let (a, b) = (1.0 - tables.u[q], tables.u[q]);
-        sums.ends[0][0] += slope[q] * (a * a);
-        sums.ends[1][0] += slope[q] * (a * b);
-        sums.ends[1][1] += slope[q] * (b * b);
-        for (end, shape) in [a, b].into_iter().enumerate() {
-            sums.ends_force[end][0] += by_h[q] * shape;
-            sums.ends_force[end][1] += by_v[q] * shape;
-            sums.ends_residual[end] += load[q] * shape;
-        }
+        let u = tables.place[q];
+        let s = points.slope[q] * u;
+        slope[0] += points.slope[q];
+        slope[1] += s;
+        slope[2] += s * u;
+        by_h[0] += points.by_h[q];
+        by_h[1] += points.by_h[q] * u;
+        by_v[0] += points.by_v[q];
+        by_v[1] += points.by_v[q] * u;
+        load[0] += points.load[q];
+        load[1] += points.load[q] * u;
     }
-    let moment = beams.bending * turn;
-    sums.ends[0][0] += beams.bending;
-    sums.ends[1][0] -= beams.bending;
-    sums.ends[1][1] += beams.bending;
-    sums.ends_residual[0] -= moment;
-    sums.ends_residual[1] += moment;
-    sums
+    let (b, moment) = (beams.bending, beams.bending * (at.ends[1] - at.ends[0]));
+    let mut second = [[zero; 4]; 4];
+    second[0][0] = slope[0] - slope[1] * 2.0 + slope[2] + b;
+    second[1][0] = slope[1] - slope[2] - b;
+    second[1][1] = slope[2] + b;
+    second[2] = [by_h[0] - by_h[1], by_h[1], points.compliance[0], zero];
+    second[3] = [by_v[0] - by_v[1], by_v[1], points.compliance[1], points.compliance[2]];
+    (second, [load[0] - load[1] - moment, load[1] + moment, points.gap[0], points.gap[1]])
 }
 
-/// As `recover` of the general path, for the first modes beyond those solved for. `load` carries the weights and −L.
-fn extra_modes<const M: usize, const Q: usize>(tables: &Tables<M, Q>, beams: &Beams<Q>, load: &[Lane; Q]) -> [Lane; EXTRA] {
-    let mut moments = [Lane::ZERO; EXTRA + 2];
-    for (sum, row) in moments.iter_mut().zip(&tables.legendre) {
-        for q in 0..Q {
-            *sum += load[q] * row[q];
-        }
-    }
-    let mut out = [Lane::ZERO; EXTRA];
-    for (k, mode) in out.iter_mut().enumerate() {
-        *mode = (moments[k] - moments[k + 2]) / beams.bending * (0.5 / root_of(M + 2 + k));
-    }
-    out
-}
-
-/// L·D·Lᵀ of the bubbles in place: rows of L below the diagonal, 1/D on it. Counts negative pivots.
-fn factor<const M: usize>(inner: &mut [[Lane; M]; M], bending: Lane, negative: &mut [u32; LANES]) -> Result<(), NeedsPivoting> {
+/// L·D·Lᵀ of the bubbles in place, and the first half of the solution for five right-hand sides: `outer` becomes L⁻¹ of itself, `scaled`
+/// D⁻¹ of that. Counts negative pivots.
+#[inline]
+fn eliminate<const M: usize>(
+    inner: &mut [[Lane; M]; M],
+    outer: &mut [[Lane; 5]; M],
+    scaled: &mut [[Lane; 5]; M],
+    bending: Lane,
+    negative: &mut [u32; LANES],
+) -> Result<(), NeedsPivoting> {
     for row in 0..M {
         for k in 0..row {
             let mut sum = inner[row][k];
@@ -276,10 +326,14 @@ fn factor<const M: usize>(inner: &mut [[Lane; M]; M], bending: Lane, negative: &
             inner[row][k] = sum;
         }
         let mut pivot = inner[row][row];
+        let mut right = outer[row];
         for k in 0..row {
-            let scaled = inner[row][k] * inner[k][k];
-            pivot -= inner[row][k] * scaled;
-            inner[row][k] = scaled;
+            let factor = inner[row][k] * inner[k][k];
+            pivot -= inner[row][k] * factor;
+            inner[row][k] = factor;
+            for c in 0..5 {
+                right[c] -= factor * outer[k][c];
+            }
         }
         if !pivot.abs().all_above(bending * SMALL_PIVOT) {
             return Err(NeedsPivoting);
@@ -287,73 +341,25 @@ fn factor<const M: usize>(inner: &mut [[Lane; M]; M], bending: Lane, negative: &
         for (count, p) in negative.iter_mut().zip(pivot.0) {
             *count += u32::from(p < 0.0);
         }
-        inner[row][row] = Lane::splat(1.0) / pivot;
+        let inverse = Lane::splat(1.0) / pivot;
+        inner[row][row] = inverse;
+        outer[row] = right;
+        for c in 0..5 {
+            scaled[row][c] = right[c] * inverse;
+        }
     }
     Ok(())
 }
 
-fn solve<const M: usize>(inner: &[[Lane; M]; M], x: &mut [[Lane; 5]; M]) {
-    for row in 1..M {
-        for k in 0..row {
-            for c in 0..5 {
-                x[row][c] -= inner[row][k] * x[k][c];
-            }
-        }
-    }
-    for row in 0..M {
-        for c in 0..5 {
-            x[row][c] = x[row][c] * inner[row][row];
-        }
-    }
-    for row in (1..M).rev() {
-        for k in 0..row {
-            for c in 0..5 {
-                x[k][c] -= inner[row][k] * x[row][c];
-            }
-        }
-    }
-}
-
-/// The Schur complement by (`φ_A`, `φ_B`, H, V), lower triangle, and the gradient.
+/// Eliminates the force: the flexibility block C is negative definite for a stable beam.
 #[inline]
-fn schur<const M: usize>(sums: &Integrals<M>, answer: &[[Lane; 5]; M]) -> ([[Lane; 4]; 4], [Lane; 4]) {
-    let mut s = [[Lane::ZERO; 4]; 4];
-    let mut g = [sums.ends_residual[0], sums.ends_residual[1], sums.gap[0], sums.gap[1]];
-    s[0][0] = sums.ends[0][0];
-    s[1][0] = sums.ends[1][0];
-    s[1][1] = sums.ends[1][1];
-    for end in 0..2 {
-        s[2][end] = sums.ends_force[end][0];
-        s[3][end] = sums.ends_force[end][1];
-    }
-    s[2][2] = sums.compliance[0];
-    s[3][2] = sums.compliance[1];
-    s[3][3] = sums.compliance[2];
-    for k in 0..M {
-        for i in 0..4 {
-            let left = sums.outer[k][i];
-            for j in 0..=i {
-                s[i][j] -= left * answer[k][j];
-            }
-            g[i] -= left * answer[k][4];
-        }
-    }
-    (s, g)
-}
-
-fn condense<const M: usize, const Q: usize>(
-    sums: &mut Integrals<M>,
+fn release<const M: usize, const Q: usize>(
+    s: &[[Lane; 4]; 4],
+    g: &[Lane; 4],
     beams: &Beams<Q>,
     at: &Unknowns<M>,
-    apart: [Lane; 2],
-    out: &mut Condensed<M>,
+    out: &mut Condensed<M, Q>,
 ) -> Result<(), NeedsPivoting> {
-    let mut negative = [0; LANES];
-    factor(&mut sums.inner, beams.bending, &mut negative)?;
-    out.answer = sums.outer;
-    solve(&sums.inner, &mut out.answer);
-    let (s, g) = schur(sums, &out.answer);
-    // Eliminate the force: the flexibility block C is negative definite for a stable beam.
     let (c00, c01, c11) = (s[2][2], s[3][2], s[3][3]);
     let determinant = c00 * c11 - c01 * c01;
     let size = beams.length * beams.length / beams.bending;
@@ -363,7 +369,7 @@ fn condense<const M: usize, const Q: usize>(
     if !regular {
         return Err(NeedsPivoting);
     }
-    for (lane, count) in negative.iter_mut().enumerate() {
+    for (lane, count) in out.negative.iter_mut().enumerate() {
         // Inertia of a symmetric 2 × 2 block.
         *count += if determinant.0[lane] < 0.0 {
             1
@@ -374,77 +380,165 @@ fn condense<const M: usize, const Q: usize>(
         };
     }
     let inverse = Lane::splat(1.0) / determinant;
-    let flexibility = [[c11 * inverse, -(c01 * inverse)], [-(c01 * inverse), c00 * inverse]];
-    let coupling = [[s[2][0], s[2][1]], [s[3][0], s[3][1]]];
-    let by_rotation = &mut out.by_rotation;
-    let mut closing = [Lane::ZERO; 2];
-    let gap = [g[2] + apart[0], g[3] + apart[1]];
+    let across = -(c01 * inverse);
+    let f = [[c11 * inverse, across], [across, c00 * inverse]];
+    let (h, v) = ([s[2][0], s[2][1]], [s[3][0], s[3][1]]);
+    let (mut by, mut closing) = ([[Lane::ZERO; 2]; 2], [Lane::ZERO; 2]);
     for i in 0..2 {
         for j in 0..2 {
-            by_rotation[i][j] = flexibility[i][0] * coupling[0][j] + flexibility[i][1] * coupling[1][j];
+            by[i][j] = f[i][0] * h[j] + f[i][1] * v[j];
         }
-        closing[i] = flexibility[i][0] * gap[0] + flexibility[i][1] * gap[1];
+        closing[i] = f[i][0] * g[2] + f[i][1] * g[3];
     }
-    let mut rotation = [[s[0][0], s[1][0]], [s[1][0], s[1][1]]];
-    let mut moment = [g[0], g[1]];
-    for i in 0..2 {
-        for j in 0..2 {
-            rotation[i][j] -= coupling[0][i] * by_rotation[0][j] + coupling[1][i] * by_rotation[1][j];
-        }
-        moment[i] -= coupling[0][i] * closing[0] + coupling[1][i] * closing[1];
-    }
+    let turned = |i: usize, j: usize| s[i][j] - h[i] * by[0][j] - v[i] * by[1][j];
+    let moment = |i: usize| g[i] - h[i] * closing[0] - v[i] * closing[1];
     // By the position of B: d(force)/du = −C⁻¹, and by rotations −C⁻¹ K.
-    out.translation = [[-flexibility[0][0], -flexibility[0][1]], [-flexibility[1][0], -flexibility[1][1]]];
-    out.mixed = [[-by_rotation[0][0], -by_rotation[0][1]], [-by_rotation[1][0], -by_rotation[1][1]]];
-    out.pull = [at.force[0] - closing[0], at.force[1] - closing[1]];
-    out.rotation = rotation;
-    out.moment = moment;
-    out.flexibility = flexibility;
-    out.closing = closing;
-    out.extra = sums.extra;
-    out.negative = negative;
+    out.flat = [
+        turned(0, 0),
+        turned(1, 0),
+        turned(1, 1),
+        -by[0][0],
+        -by[1][0],
+        -by[0][1],
+        -by[1][1],
+        -f[0][0],
+        -f[0][1],
+        -f[1][1],
+        moment(0),
+        moment(1),
+        at.force[0] - closing[0],
+        at.force[1] - closing[1],
+        Lane::ZERO,
+        Lane::ZERO,
+    ];
+    (out.flexibility, out.by_rotation, out.closing) = (f, by, closing);
     Ok(())
 }
 
-impl<const M: usize> Default for Condensed<M> {
+impl<const M: usize, const Q: usize> Default for Condensed<M, Q> {
     fn default() -> Self {
-        let (two, four) = ([Lane::ZERO; 2], [[Lane::ZERO; 2]; 2]);
+        let (zero, two, four, points) = (Lane::ZERO, [Lane::ZERO; 2], [[Lane::ZERO; 2]; 2], [Lane::ZERO; Q]);
         Self {
-            rotation: four,
-            mixed: four,
-            translation: four,
-            moment: two,
-            pull: two,
-            answer: [[Lane::ZERO; 5]; M],
+            flat: [zero; 16],
+            inner: [[zero; M]; M],
+            scaled: [[zero; 5]; M],
             flexibility: four,
             by_rotation: four,
             closing: two,
-            extra: [Lane::ZERO; EXTRA],
+            points: Points { load: points, slope: points, by_h: points, by_v: points, gap: two, compliance: [zero; 3] },
             negative: [0; LANES],
         }
     }
 }
 
-impl<const M: usize> Condensed<M> {
+impl<const M: usize, const Q: usize> Condensed<M, Q> {
     /// The change of the inner unknowns that goes with a change of the ends. `residual` is 1 for a Newton step, 0 for a tangent.
+    #[inline]
     pub(crate) fn expand(&self, ends: [Lane; 2], apart: [Lane; 2], residual: f64) -> Unknowns<M> {
-        let mut change = Unknowns { ends, ..Unknowns::default() };
+        let (mut force, mut bubbles) = ([Lane::ZERO; 2], [Lane::ZERO; M]);
         for i in 0..2 {
-            let f = self.closing[i] * residual
+            force[i] = -(self.closing[i] * residual
                 + self.flexibility[i][0] * apart[0]
                 + self.flexibility[i][1] * apart[1]
                 + self.by_rotation[i][0] * ends[0]
-                + self.by_rotation[i][1] * ends[1];
-            change.force[i] = -f;
+                + self.by_rotation[i][1] * ends[1]);
         }
-        for (target, answer) in change.bubbles.iter_mut().zip(&self.answer) {
-            let sum = answer[0] * ends[0]
-                + answer[1] * ends[1]
-                + answer[2] * change.force[0]
-                + answer[3] * change.force[1]
-                + answer[4] * residual;
-            *target = -sum;
+        for k in 0..M {
+            let s = &self.scaled[k];
+            bubbles[k] = -(s[0] * ends[0] + s[1] * ends[1] + s[2] * force[0] + s[3] * force[1] + s[4] * residual);
         }
-        change
+        for row in (1..M).rev() {
+            let value = bubbles[row];
+            for k in 0..row {
+                bubbles[k] -= self.inner[row][k] * value;
+            }
+        }
+        Unknowns { ends, force, bubbles }
+    }
+
+    /// The modes beyond those solved for at the state that was linearised, and their change along a change of that state.
+    #[inline]
+    pub(crate) fn beyond<const E: usize>(&self, tables: &Tables<M, Q, E>, bending: Lane, change: &Unknowns<M>) -> ([Lane; E], [Lane; E]) {
+        let p = &self.points;
+        let mut along = [Lane::ZERO; Q];
+        for q in 0..Q {
+            along[q] = p.slope[q] * tables.rotation(change, q) + p.by_h[q] * change.force[0] + p.by_v[q] * change.force[1];
+        }
+        (tables.beyond(bending, &p.load), tables.beyond(bending, &along))
+    }
+}
+
+/// Derivatives of the Lagrangian of four beams by their constants at a state, and their change along a change of the state: see
+/// `gradient/field.rs`. All but those by the angle coefficients are logarithmic. Each has the value first, then the change.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Contraction {
+    /// By the length with the next three held.
+    pub(crate) length: [Lane; 2],
+    /// By EI/L.
+    pub(crate) bending: [Lane; 2],
+    /// By 1/EA.
+    pub(crate) axial: [Lane; 2],
+    /// By 1/kGA.
+    pub(crate) shear: [Lane; 2],
+    /// By `c_0`, `c_1`, …
+    pub(crate) angles: Vec<[Lane; 2]>,
+}
+
+impl Contraction {
+    /// `coefficients` is the largest number of angle coefficients of the four beams.
+    pub(crate) fn contract<const M: usize, const Q: usize, const E: usize>(
+        &mut self,
+        tables: &Tables<M, Q, E>,
+        beams: &Beams<Q>,
+        (at, change): (&Unknowns<M>, &Unknowns<M>),
+        coefficients: usize,
+    ) {
+        let two = [Lane::ZERO; 2];
+        (self.length, self.axial, self.shear) = (two, two, two);
+        self.angles.clear();
+        self.angles.resize(coefficients, two);
+        let (turn, d_turn) = (at.ends[1] - at.ends[0], change.ends[1] - change.ends[0]);
+        let mut bending = [turn * turn, turn * d_turn];
+        for (a, d) in at.bubbles.iter().zip(&change.bubbles) {
+            bending[0] += *a * *a;
+            bending[1] += *a * *d;
+        }
+        self.bending = [beams.bending * bending[0] * 0.5, beams.bending * bending[1]];
+        let ([h, v], [dh, dv]) = (at.force, change.force);
+        let softness = beams.axial - beams.shear;
+        for q in 0..Q {
+            let (sin_phi, cos_phi) = tables.rotation(at, q).sin_cos();
+            let turn = tables.rotation(change, q);
+            let (rest_cos, rest_sin) = (beams.cos[q], beams.sin[q]);
+            let cos = rest_cos * cos_phi - rest_sin * sin_phi;
+            let sin = rest_sin * cos_phi + rest_cos * sin_phi;
+            let w = beams.weight[q];
+            let (axial, across) = (h * cos + v * sin, v * cos - h * sin);
+            let (by_t, by_n) = (dh * cos + dv * sin, dv * cos - dh * sin);
+            let mut length = [axial - (h * rest_cos + v * rest_sin), by_t - (dh * rest_cos + dv * rest_sin) + across * turn];
+            let mut angle = [across - (v * rest_cos - h * rest_sin), by_n - axial * turn - (dv * rest_cos - dh * rest_sin)];
+            if beams.soft {
+                let (d_axial, d_across) = (across * turn + by_t, by_n - axial * turn);
+                let (n, s) = (beams.axial * axial, beams.shear * across);
+                let (stretch, slide) = ([n * axial * 0.5, n * d_axial], [s * across * 0.5, s * d_across]);
+                let product = [axial * across, d_axial * across + axial * d_across];
+                for i in 0..2 {
+                    self.axial[i] += w * stretch[i];
+                    self.shear[i] += w * slide[i];
+                    length[i] += stretch[i] + slide[i];
+                    angle[i] += softness * product[i];
+                }
+            }
+            let mut power = [w * angle[0], w * angle[1]];
+            for sum in &mut self.angles {
+                for i in 0..2 {
+                    sum[i] += power[i];
+                    power[i] = power[i] * tables.place[q];
+                }
+            }
+            for i in 0..2 {
+                self.length[i] += w * length[i];
+            }
+        }
     }
 }

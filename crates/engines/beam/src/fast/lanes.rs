@@ -7,8 +7,9 @@ use forcewright_base::maths;
 /// Beams per lane group.
 pub(crate) const LANES: usize = 4;
 
-/// One number of each of four beams.
+/// One number of each of four beams. Aligned, so that arithmetic can take it from memory without a load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(32))]
 pub(crate) struct Lane(pub(crate) [f64; LANES]);
 
 macro_rules! elementwise {
@@ -71,7 +72,8 @@ impl Lane {
 
     #[inline]
     pub(crate) fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
+        let a = self.0;
+        Self([a[0].abs(), a[1].abs(), a[2].abs(), a[3].abs()])
     }
 
     /// Elementwise larger one; a NaN in `other` is kept.
@@ -85,7 +87,8 @@ impl Lane {
     /// Whether every lane exceeds a limit; NaN does not.
     #[inline]
     pub(crate) fn all_above(self, limit: Self) -> bool {
-        self.0.iter().zip(limit.0).all(|(a, b)| *a > b)
+        let (a, b) = (self.0, limit.0);
+        a[0] > b[0] && a[1] > b[1] && a[2] > b[2] && a[3] > b[3]
     }
 
     /// Sine and cosine, wrong by at most 1e-15. Half the angle by its Taylor series, which is exact to a double up to 1.25 rad, doubled;
@@ -93,25 +96,61 @@ impl Lane {
     #[inline]
     pub(crate) fn sin_cos(self) -> (Self, Self) {
         const LARGEST: f64 = 2.5;
-        let [a, b, c, d] = self.0.map(f64::abs);
+        let [a, b, c, d] = self.abs().0;
         // Written so that NaN goes there too.
         if !(a <= LARGEST && b <= LARGEST && c <= LARGEST && d <= LARGEST) {
             let pairs = self.0.map(maths::sin_cos);
             return (Self(pairs.map(|p| p.0)), Self(pairs.map(|p| p.1)));
         }
-        let half = self * 0.5;
-        let z = half * half;
-        let mut sin = Self::splat(SIN[9]);
-        for c in SIN[..9].iter().rev() {
-            sin = sin * z + *c;
-        }
-        sin = sin * half;
-        let mut cos = Self::splat(COS[9]);
-        for c in COS[..9].iter().rev() {
-            cos = cos * z + *c;
-        }
-        (sin * cos * 2.0, Self::splat(1.0) - sin * sin * 2.0)
+        // Two terms fewer are as exact up to 0.6 rad.
+        if a <= SMALL && b <= SMALL && c <= SMALL && d <= SMALL { series::<7>(self) } else { series::<9>(self) }
     }
+
+    /// Sine and cosine of angles of any size, wrong by at most 1e-15 up to 50 rad. Takes away the nearest multiple of π, which changes
+    /// no more than both signs.
+    pub(crate) fn sin_cos_reduced(self) -> (Self, Self) {
+        // Written so that NaN goes there too.
+        if !self.0.iter().all(|x| x.abs() <= 50.0) {
+            let pairs = self.0.map(maths::sin_cos);
+            return (Self(pairs.map(|p| p.0)), Self(pairs.map(|p| p.1)));
+        }
+        let turns = nearest(self * std::f64::consts::FRAC_1_PI);
+        let rest = self - turns * PI_HIGH - turns * PI_LOW;
+        let odd = turns - nearest(turns * 0.5) * 2.0;
+        let sign = Self::splat(1.0) - odd.abs() * 2.0;
+        let (sin, cos) = series::<9>(rest);
+        (sin * sign, cos * sign)
+    }
+}
+
+/// Below this the short series do.
+const SMALL: f64 = 1.2;
+/// The first 33 bits of π, so that products with small integers are exact, and the rest.
+const PI_HIGH: f64 = 2.0 * 1.570_796_326_734_125_6;
+const PI_LOW: f64 = 2.0 * 6.077_100_506_506_192e-11;
+
+/// The nearest integer of numbers below 2⁵¹: adding 1.5·2⁵² leaves no room for a fraction.
+#[inline]
+fn nearest(x: Lane) -> Lane {
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    (x + SHIFT) - Lane::splat(SHIFT)
+}
+
+/// Sine and cosine by the series of half the angle with the terms up to `LAST`.
+#[inline]
+fn series<const LAST: usize>(x: Lane) -> (Lane, Lane) {
+    let half = x * 0.5;
+    let z = half * half;
+    let mut sin = Lane::splat(SIN[LAST]);
+    for c in SIN[..LAST].iter().rev() {
+        sin = sin * z + *c;
+    }
+    sin = sin * half;
+    let mut cos = Lane::splat(COS[LAST]);
+    for c in COS[..LAST].iter().rev() {
+        cos = cos * z + *c;
+    }
+    (sin * cos * 2.0, Lane::splat(1.0) - sin * sin * 2.0)
 }
 
 /// (−1)ᵏ/(2k + 1)!
@@ -157,6 +196,20 @@ mod tests {
             }
         }
         // Doubling doubles the rounding of the half angle.
+        assert!(worst < 1e-15, "{worst:e}");
+    }
+
+    #[test]
+    fn multiples_of_half_a_turn_are_taken_away() {
+        let mut worst = 0.0_f64;
+        for i in -6000..6000 {
+            let x = f64::from(i) * 1e-2;
+            let angles = [x, 0.5 * x, -x, 0.1 * x + 1.5];
+            let (sin, cos) = Lane(angles).sin_cos_reduced();
+            for (lane, x) in angles.into_iter().enumerate() {
+                worst = worst.max((sin.0[lane] - maths::sin(x)).abs()).max((cos.0[lane] - maths::cos(x)).abs());
+            }
+        }
         assert!(worst < 1e-15, "{worst:e}");
     }
 }

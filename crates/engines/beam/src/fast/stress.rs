@@ -1,210 +1,417 @@
 //! The largest stress of a network in a given state.
+//!
+//! Bending stress is a polynomial along each beam. The states of the walk are surveyed at Chebyshev points, all beams at once: that tells
+//! between which points a maximum can be. Between the states, the stress at the ends is interpolated for all beams; a beam's whole
+//! state only where a maximum inside it may be the largest.
 
 #![allow(clippy::needless_range_loop, reason = "sums over modes are read by their indices")]
 
 use forcewright_base::maths;
 
-use super::kernel::{EXTRA, Unknowns};
+use super::hermite::Hermite;
+use super::kernel::Unknowns;
 use super::lanes::{LANES, Lane};
-use super::network::add_scaled;
+use super::walk::Node;
 use crate::element::root_of;
 use crate::model::Model;
+use crate::shape::Shape;
 
-/// Beams whose coarse maximum is at least this part of the largest are looked at closely.
-const CLOSE: f64 = 0.98;
+/// The maximum inside a beam is looked for at a station if those of the states around it are, interpolated, at least this part of the largest stress.
+const CLOSE: f64 = 0.9;
+/// Beams below this part of the largest stress are not looked at closely.
+const FAR: f64 = 0.5;
+/// Newton iterations for the place of a maximum.
+const MOST_ITERATIONS: usize = 6;
 
-/// Slopes of the bubbles at Chebyshev points, where stress is looked for first.
+/// Slopes of the modes at Chebyshev points, and what else does not depend on the network.
 #[derive(Debug)]
-pub(crate) struct Sampling<const M: usize> {
-    slope: Vec<([f64; M], [f64; EXTRA])>,
+pub(crate) struct Sampling<const M: usize, const E: usize> {
+    slope: Vec<Row<M, E>>,
+    /// Where those points are, and the places half way in angle between them.
+    place: Vec<f64>,
+    /// Second derivatives at both ends.
+    bend: [Row<M, E>; 2],
+    samples: Vec<Lane>,
 }
 
-/// What stress is computed from: the state of four beams with the modes beyond those solved for.
+/// Factors of all modes.
+type Row<const M: usize, const E: usize> = ([Lane; M], [Lane; E]);
+
+/// Four beams at one state: their unknowns, the modes beyond those solved for, and the derivative of both by the control.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Slopes<const M: usize> {
-    base: Unknowns<M>,
-    extra: [Lane; EXTRA],
+pub(crate) struct Group<const M: usize, const E: usize> {
+    pub(crate) at: Unknowns<M>,
+    pub(crate) by: Unknowns<M>,
+    pub(crate) beyond: [Lane; E],
+    pub(crate) beyond_by: [Lane; E],
+    pub(crate) survey: Survey,
 }
 
-impl<const M: usize> Default for Slopes<M> {
+impl<const M: usize, const E: usize> Default for Group<M, E> {
     fn default() -> Self {
-        Self { base: Unknowns::default(), extra: [Lane::ZERO; EXTRA] }
+        let (at, beyond) = (Unknowns::default(), [Lane::ZERO; E]);
+        Self { at, by: at, beyond, beyond_by: beyond, survey: Survey::default() }
     }
 }
 
-impl<const M: usize> Slopes<M> {
-    /// Adds a state with a weight.
-    #[inline]
-    pub(crate) fn add_scaled(&mut self, state: &Unknowns<M>, extra: &[Lane; EXTRA], weight: f64) {
-        add_scaled(&mut self.base, state, weight);
-        self.base.ends[0] += state.ends[0] * weight;
-        self.base.ends[1] += state.ends[1] * weight;
-        for (sum, value) in self.extra.iter_mut().zip(extra) {
-            *sum += *value * weight;
-        }
-    }
+/// What is known about the stress of four beams at one state.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Survey {
+    /// dφ/du at the start, in the middle and at the end, and its derivative by the control.
+    pub(crate) slope: [Lane; 3],
+    pub(crate) slope_by: [Lane; 3],
+    /// What maxima inside cannot exceed by much, Pa.
+    inside: Lane,
+    /// Samples with a maximum next to them, as bits.
+    places: [u64; LANES],
 }
 
-/// Buffers of [`Sampling::peak`].
-#[derive(Debug, Default)]
-pub(crate) struct Scratch {
-    bending: Vec<Lane>,
-    /// Beam, sample, and what the stress there cannot exceed by much.
-    places: Vec<(usize, usize, f64)>,
-}
-
-/// What turns slopes and forces into stress, for the beams of one network.
-#[derive(Debug, Default)]
+/// What turns slopes and forces of four beams into stress.
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StressModel {
-    /// Per group: Pa per rad of slope, Pa per unit of force.
-    factors: Vec<[Lane; 2]>,
+    /// Pa per rad of slope.
+    pub(crate) bending: Lane,
+    /// Pa per unit of force.
+    axial: Lane,
+    /// Direction at rest at both ends, and its slope by u.
+    cos: [Lane; 2],
+    sin: [Lane; 2],
+    turn: [Lane; 2],
+    soft: bool,
 }
 
-impl<const M: usize> Sampling<M> {
-    pub(crate) fn new() -> Self {
-        let intervals = 2 * M + 4;
-        let place = |i: usize| 0.5 - 0.5 * maths::cos(std::f64::consts::PI * i as f64 / intervals as f64);
-        Self { slope: (0..=intervals).map(|i| modes::<M>(place(i)).0).collect() }
-    }
-
-    /// Prepares a network.
-    pub(crate) fn model(model: &Model) -> StressModel {
-        let mut out = StressModel::default();
+impl StressModel {
+    /// For all groups of beams.
+    pub(crate) fn prepare(model: &Model, out: &mut Vec<Self>) {
+        out.clear();
         for group in model.beams.chunks(LANES) {
-            let mut factors = [Lane::ZERO; 2];
+            let mut own = Self::default();
+            let mut angle = [Lane::ZERO; 2];
             for (lane, beam) in group.iter().enumerate() {
                 let section = &beam.info.section;
-                factors[0].0[lane] = 0.5 * section.young_pa * section.thickness_m / beam.info.shape.length_m();
+                let shape = &beam.info.shape;
+                own.bending.0[lane] = 0.5 * section.young_pa * section.thickness_m / shape.length_m();
                 if beam.constants.axial > 0.0 {
-                    factors[1].0[lane] = model.force_n / section.area_m2();
+                    own.axial.0[lane] = model.force_n / section.area_m2();
+                    own.soft = true;
+                    for (end, u) in [0.0, 1.0].into_iter().enumerate() {
+                        angle[end].0[lane] = shape.angle_at(u);
+                        own.turn[end].0[lane] = shape.slope_at(u);
+                    }
                 }
             }
-            out.factors.push(factors);
+            if own.soft {
+                for end in 0..2 {
+                    (own.sin[end], own.cos[end]) = angle[end].sin_cos_reduced();
+                }
+            }
+            out.push(own);
+        }
+    }
+
+    /// Largest stress at both ends, from the slope there, the end rotations and the force.
+    #[inline]
+    fn ends(&self, slope: [Lane; 2], ends: [Lane; 2], [h, v]: [Lane; 2]) -> Lane {
+        let mut stress = [slope[0].abs() * self.bending, slope[1].abs() * self.bending];
+        if self.soft {
+            for end in 0..2 {
+                let (sin, cos) = ends[end].sin_cos();
+                let (rest_cos, rest_sin) = (self.cos[end], self.sin[end]);
+                let along = h * (rest_cos * cos - rest_sin * sin) + v * (rest_sin * cos + rest_cos * sin);
+                stress[end] += along.abs() * self.axial;
+            }
+        }
+        stress[0].max(stress[1])
+    }
+}
+
+/// One beam between two states.
+struct OneBeam<'a, const M: usize, const E: usize> {
+    ends: [f64; 2],
+    force: [f64; 2],
+    bubbles: [f64; M],
+    beyond: [f64; E],
+    /// Pa per rad of slope, Pa per unit of force.
+    factors: [f64; 2],
+    shape: &'a Shape,
+}
+
+impl<'a, const M: usize, const E: usize> OneBeam<'a, M, E> {
+    /// Beam `lane` of a group.
+    fn new(nodes: &[Node<M, E>], hermite: &Hermite, (group, lane): (usize, usize), factors: [f64; 2], shape: &'a Shape) -> Self {
+        let mut beam = Self { ends: [0.0; 2], force: [0.0; 2], bubbles: [0.0; M], beyond: [0.0; E], factors, shape };
+        for (i, [a, b]) in hermite.weights() {
+            let from = &nodes[i].groups[group];
+            for i in 0..2 {
+                beam.ends[i] += a * from.at.ends[i].0[lane] + b * from.by.ends[i].0[lane];
+                beam.force[i] += a * from.at.force[i].0[lane] + b * from.by.force[i].0[lane];
+            }
+            for k in 0..M {
+                beam.bubbles[k] += a * from.at.bubbles[k].0[lane] + b * from.by.bubbles[k].0[lane];
+            }
+            for k in 0..E {
+                beam.beyond[k] += a * from.beyond[k].0[lane] + b * from.beyond_by[k].0[lane];
+            }
+        }
+        beam
+    }
+
+    /// Largest stress of both faces at a place, its slope and, from bending alone, its second derivative.
+    fn stress(&self, u: f64) -> [f64; 3] {
+        let x = 2.0 * u - 1.0;
+        let turn = self.ends[1] - self.ends[0];
+        let (mut phi, mut slope, mut first, mut second) = (self.ends[0] + turn * u, turn, 0.0, 0.0);
+        // Legendre polynomials of degree n − 1 and n with two derivatives by x.
+        let (mut before, mut here) = ([1.0, 0.0, 0.0], [x, 1.0, 0.0]);
+        for k in 0..M + E {
+            let (n, root) = ((k + 1) as f64, ROOTS[k]);
+            let odd = 2.0 * n + 1.0;
+            let next = [(odd * x * here[0] - n * before[0]) * INVERSES[k], before[1] + odd * here[0], before[2] + odd * here[1]];
+            let amplitude = if k < M { self.bubbles[k] } else { self.beyond[k - M] };
+            let scaled = amplitude * root;
+            slope += scaled * here[0];
+            first += scaled * here[1];
+            second += scaled * here[2];
+            phi += scaled * (next[0] - before[0]) * (0.5 / odd);
+            (before, here) = (here, next);
+        }
+        let sign = self.factors[0].copysign(slope);
+        let mut out = [sign * slope, 2.0 * sign * first, 4.0 * sign * second];
+        if self.factors[1] > 0.0 {
+            let (sin, cos) = maths::sin_cos(self.shape.angle_at(u) + phi);
+            let axial = self.force[0] * cos + self.force[1] * sin;
+            let across = self.force[1] * cos - self.force[0] * sin;
+            let factor = self.factors[1].copysign(axial);
+            out[0] += factor * axial;
+            out[1] += factor * across * (self.shape.slope_at(u) + slope);
         }
         out
     }
 
-    /// The beam with the largest stress, and that stress, Pa.
-    ///
-    /// Bending is looked at everywhere, axial stress where bending is largest: it changes little along a beam.
-    pub(crate) fn peak(&self, model: &Model, stress: &StressModel, groups: &[Slopes<M>], scratch: &mut Scratch) -> (usize, f64) {
-        scratch.places.clear();
-        let mut largest = 0.0_f64;
-        for (group, state) in groups.iter().enumerate() {
-            self.bending(state, stress.factors[group][0], &mut scratch.bending);
-            let axial = (state.base.force[0].abs() + state.base.force[1].abs()) * stress.factors[group][1];
-            for lane in 0..LANES.min(model.beams.len() - group * LANES) {
-                let at = |sample: usize| scratch.bending[sample].0[lane];
-                let last = scratch.bending.len() - 1;
-                for sample in 0..=last {
-                    let (left, here, right) = (at(sample.saturating_sub(1)), at(sample), at((sample + 1).min(last)));
-                    if here >= left && here >= right {
-                        let estimate = vertex(left, here, right);
-                        largest = largest.max(estimate);
-                        scratch.places.push((group * LANES + lane, sample, estimate + axial.0[lane]));
+    /// The maximum next to a place, by Newton's method between two others; or less, if that is below `floor`.
+    fn maximum(&self, start: f64, (low, high): (f64, f64), tolerance: f64, floor: f64) -> f64 {
+        let (mut at, mut best) = (start, 0.0_f64);
+        for _ in 0..MOST_ITERATIONS {
+            let [stress, slope, bend] = self.stress(at);
+            best = best.max(stress);
+            // Where the curve is not that of a maximum, towards the higher side.
+            let newton = if bend < 0.0 { at - slope / bend } else { at + (0.2 * (high - low)).copysign(slope) };
+            let next = newton.clamp(low, high);
+            let gain = 0.5 * slope * (next - at);
+            // The parabola's gain is wrong by a small part of itself.
+            if bend < 0.0 && (gain.abs() <= tolerance * best || stress + 4.0 * gain.abs() < floor) {
+                return best.max(stress + gain);
+            }
+            at = next;
+        }
+        best
+    }
+}
+
+/// Most modes of any resolution.
+const MODES: usize = 24;
+/// √(2k − 1) and 1/k of degree k = 2, 3, …
+const ROOTS: [f64; MODES] = tables().0;
+const INVERSES: [f64; MODES] = tables().1;
+
+/// Newton's method for the roots: there is no square root at compile time.
+const fn tables() -> ([f64; MODES], [f64; MODES]) {
+    let (mut roots, mut inverses) = ([0.0; MODES], [0.0; MODES]);
+    let mut k = 0;
+    while k < MODES {
+        let degree = (k + 2) as f64;
+        let square = 2.0 * degree - 1.0;
+        let mut root = degree;
+        let mut i = 0;
+        while i < 12 {
+            root = 0.5 * (root + square / root);
+            i += 1;
+        }
+        roots[k] = root;
+        inverses[k] = 1.0 / degree;
+        k += 1;
+    }
+    (roots, inverses)
+}
+
+impl<const M: usize, const E: usize> Sampling<M, E> {
+    pub(crate) fn new() -> Self {
+        const { assert!(M + E <= MODES) };
+        // Even, so that one is in the middle.
+        let intervals = 2 * (M + E).div_ceil(2) + 2;
+        let place = |i: usize| 0.5 - 0.5 * maths::cos(std::f64::consts::PI * i as f64 / intervals as f64);
+        let row = |factor: &dyn Fn(usize) -> f64| {
+            (std::array::from_fn(|k| Lane::splat(factor(k + 2))), std::array::from_fn(|k| Lane::splat(factor(M + k + 2))))
+        };
+        let slope = |i: usize| {
+            let mut p = [0.0; MODES + 2];
+            forcewright_base::quadrature::legendre_values(2.0 * place(i) - 1.0, &mut p);
+            row(&|k| root_of(k) * p[k - 1])
+        };
+        // P_n' is n (n + 1)/2 at 1, with alternating sign at −1.
+        let bend = |end: f64| row(&|k| root_of(k) * (k * (k - 1)) as f64 * if k % 2 == 0 { 1.0 } else { end });
+        let halves = (0..=2 * intervals).map(|i| 0.5 - 0.5 * maths::cos(std::f64::consts::PI * i as f64 / (2 * intervals) as f64));
+        Self { slope: (0..=intervals).map(slope).collect(), place: halves.collect(), bend: [bend(-1.0), bend(1.0)], samples: Vec::new() }
+    }
+
+    /// Fills in what is known about stress at a state.
+    pub(crate) fn survey(&mut self, stress: &StressModel, group: &mut Group<M, E>) {
+        let turn = group.at.ends[1] - group.at.ends[0];
+        self.samples.clear();
+        for row in &self.slope {
+            self.samples.push(turn + dot(row, &group.at.bubbles, &group.beyond));
+        }
+        let last = self.samples.len() - 1;
+        let survey = &mut group.survey;
+        survey.slope = [self.samples[0], self.samples[last / 2], self.samples[last]];
+        survey.slope_by = Self::slopes(&self.slope, &group.by, &group.beyond_by);
+        let force = group.at.force[0].abs() + group.at.force[1].abs();
+        // Whether the stress may rise from the ends inwards; the axial part by a bound.
+        let mut rises = [Lane::ZERO; 2];
+        for end in 0..2 {
+            let slope = survey.slope[2 * end];
+            let bend = dot(&self.bend[end], &group.at.bubbles, &group.beyond) * stress.bending;
+            let axial = stress.axial * force * (stress.turn[end].abs() + slope.abs());
+            let inwards = if end == 0 { bend } else { -bend };
+            for lane in 0..LANES {
+                rises[end].0[lane] = inwards.0[lane] * 1.0_f64.copysign(slope.0[lane]) + axial.0[lane];
+            }
+        }
+        for sample in &mut self.samples {
+            *sample = sample.abs();
+        }
+        let highest = self.samples.iter().fold(Lane::ZERO, |m, s| m.max(*s)) * stress.bending + stress.axial * force;
+        let largest = highest.0.iter().fold(0.0_f64, |m, v| m.max(*v));
+        for lane in 0..LANES {
+            (survey.places[lane], survey.inside.0[lane]) = (0, highest.0[lane]);
+            if highest.0[lane] < FAR * largest {
+                continue;
+            }
+            let (mut inside, mut bits) = (0.0_f64, 0_u64);
+            let at = |i: usize| self.samples[i].0[lane];
+            let (mut left, mut here) = (at(1), at(0));
+            for i in 0..=last {
+                let right = at(if i == last { last - 1 } else { i + 1 });
+                if here >= left && here >= right {
+                    let end = usize::from(i == last);
+                    if (i > 0 && i < last) || rises[end].0[lane] > 0.0 {
+                        inside = inside.max(if i > 0 && i < last { vertex(left, here, right) } else { 1.05 * here });
+                        bits |= 1 << i;
+                    }
+                }
+                (left, here) = (here, right);
+            }
+            survey.places[lane] = bits;
+            // Where there is none, one may begin at an end on the way to the next state.
+            let bound = inside * stress.bending.0[lane] + stress.axial.0[lane] * force.0[lane];
+            survey.inside.0[lane] = bound.max(highest.0[lane]);
+        }
+    }
+
+    /// dφ/du at the start, in the middle and at the end.
+    pub(crate) fn probe(&self, at: &Unknowns<M>, beyond: &[Lane; E]) -> [Lane; 3] {
+        Self::slopes(&self.slope, at, beyond)
+    }
+
+    fn slopes(rows: &[Row<M, E>], at: &Unknowns<M>, beyond: &[Lane; E]) -> [Lane; 3] {
+        let (turn, last) = (at.ends[1] - at.ends[0], rows.len() - 1);
+        let at = |i: usize| turn + dot(&rows[i], &at.bubbles, beyond);
+        [at(0), at(last / 2), at(last)]
+    }
+
+    /// The beam with the largest stress between states, and that stress, Pa. `hermite` interpolates between the states, of which those
+    /// next to the place are `around`, and the place is this part of the way `between` them.
+    pub(crate) fn peak(
+        &self,
+        model: &Model,
+        stress: &[StressModel],
+        nodes: &[Node<M, E>],
+        (around, between): ([usize; 2], f64),
+        hermite: &Hermite,
+        tolerance: f64,
+    ) -> (usize, f64) {
+        let mut best = (0, 0.0);
+        for (g, own) in stress.iter().enumerate() {
+            let (mut slope, mut ends, mut force) = ([Lane::ZERO; 2], [Lane::ZERO; 2], [Lane::ZERO; 2]);
+            for (i, [a, b]) in hermite.weights() {
+                let from = &nodes[i].groups[g];
+                for end in 0..2 {
+                    slope[end] += from.survey.slope[2 * end] * a + from.survey.slope_by[2 * end] * b;
+                }
+                if own.soft {
+                    for i in 0..2 {
+                        ends[i] += from.at.ends[i] * a + from.by.ends[i] * b;
+                        force[i] += from.at.force[i] * a + from.by.force[i] * b;
                     }
                 }
             }
-        }
-        let mut best = (0, -1.0);
-        for (beam, sample, bound) in &scratch.places {
-            // What cannot exceed the largest is not looked at closely.
-            if *bound >= CLOSE * largest {
-                let value = self.polish(model, stress, *beam, *sample, &groups[beam / LANES]);
-                if value > best.1 {
-                    best = (*beam, value);
+            let stress = own.ends(slope, ends, force).0;
+            for lane in 0..LANES {
+                if stress[lane] > best.1 {
+                    best = (g * LANES + lane, stress[lane]);
                 }
+            }
+        }
+        for (beam, b) in model.beams.iter().enumerate() {
+            let (g, lane) = (beam / LANES, beam % LANES);
+            let (left, right) = (&nodes[around[0]].groups[g].survey, &nodes[around[1]].groups[g].survey);
+            let bound = left.inside.0[lane] + between * (right.inside.0[lane] - left.inside.0[lane]);
+            if bound < CLOSE * best.1 {
+                continue;
+            }
+            let places = left.places[lane] | right.places[lane];
+            if places == 0 {
+                continue;
+            }
+            let factors = [stress[g].bending.0[lane], stress[g].axial.0[lane]];
+            let one = OneBeam::new(nodes, hermite, (g, lane), factors, &b.info.shape);
+            let value = self.inside(places, &one, tolerance, best.1);
+            if value > best.1 {
+                best = (beam, value);
             }
         }
         best
     }
 
-    /// Bending stress of four beams at all samples.
-    fn bending(&self, state: &Slopes<M>, factor: Lane, out: &mut Vec<Lane>) {
-        let turn = state.base.ends[1] - state.base.ends[0];
-        out.clear();
-        for (slopes, extra) in &self.slope {
-            let mut slope = turn;
-            for k in 0..M {
-                slope += state.base.bubbles[k] * slopes[k];
+    /// The largest stress next to the samples of a beam.
+    fn inside(&self, places: u64, beam: &OneBeam<M, E>, tolerance: f64, floor: f64) -> f64 {
+        let last = 2 * (self.slope.len() - 1);
+        let (mut rest, mut best) = (places, 0.0_f64);
+        while rest != 0 {
+            let first = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let mut start = 2 * first;
+            if rest & (2 << first) != 0 {
+                // Between two samples that were largest before and after.
+                start += 1;
+                rest &= rest - 1;
+            } else if start == 0 {
+                start = 1;
+            } else if start == last {
+                start -= 1;
             }
-            for k in 0..EXTRA {
-                slope += state.extra[k] * extra[k];
-            }
-            out.push(slope.abs() * factor);
+            let (low, high) = (self.place[start.saturating_sub(4)], self.place[(start + 4).min(last)]);
+            best = best.max(beam.maximum(self.place[start], (low, high), tolerance, floor.max(best)));
         }
+        best
     }
+}
 
-    /// The maximum between the neighbours of a sample, by two parabolas in the angle whose cosine spaces the samples.
-    fn polish(&self, model: &Model, stress: &StressModel, beam: usize, sample: usize, state: &Slopes<M>) -> f64 {
-        let (group, lane) = (beam / LANES, beam % LANES);
-        let spacing = std::f64::consts::PI / (self.slope.len() - 1) as f64;
-        let factors = stress.factors[group].map(|f| f.0[lane]);
-        let shape = &model.beams[beam].info.shape;
-        let value = |angle: f64| {
-            let u = 0.5 - 0.5 * maths::cos(angle);
-            let ((slopes, extra), values) = modes::<M>(u);
-            let [a, b] = state.base.ends.map(|e| e.0[lane]);
-            let (mut slope, mut phi) = (b - a, a + (b - a) * u);
-            for k in 0..M {
-                slope += state.base.bubbles[k].0[lane] * slopes[k];
-                phi += state.base.bubbles[k].0[lane] * values[k];
-            }
-            for k in 0..EXTRA {
-                slope += state.extra[k].0[lane] * extra[k];
-            }
-            let mut sum = slope.abs() * factors[0];
-            if factors[1] > 0.0 {
-                let (sin, cos) = maths::sin_cos(shape.angle_at(u) + phi);
-                sum += (state.base.force[0].0[lane] * cos + state.base.force[1].0[lane] * sin).abs() * factors[1];
-            }
-            sum
-        };
-        let (mut at, mut reach) = (sample as f64 * spacing, 0.5 * spacing);
-        if sample == 0 || sample + 1 == self.slope.len() {
-            // An end is a maximum unless the stress rises from it; then the maximum is next to it.
-            let inward = if sample == 0 { 0.1 * spacing } else { -0.1 * spacing };
-            let end = value(at);
-            if value(at + inward) <= end {
-                return end;
-            }
-        }
-        let mut best = 0.0_f64;
-        for _ in 0..2 {
-            let [left, middle, right] = [value(at - reach), value(at), value(at + reach)];
-            let bend = left - 2.0 * middle + right;
-            best = best.max(middle);
-            if bend >= 0.0 {
-                return best;
-            }
-            at += (0.5 * (left - right) / bend * reach).clamp(-reach, reach);
-            reach *= 0.1;
-        }
-        best.max(value(at))
+/// Sum over all modes.
+#[inline]
+fn dot<const M: usize, const E: usize>(row: &Row<M, E>, bubbles: &[Lane; M], beyond: &[Lane; E]) -> Lane {
+    let mut sum = Lane::ZERO;
+    for k in 0..M {
+        sum += bubbles[k] * row.0[k];
     }
+    for k in 0..E {
+        sum += beyond[k] * row.1[k];
+    }
+    sum
 }
 
 /// Height of the parabola through three equally spaced values around the largest of them.
 fn vertex(left: f64, middle: f64, right: f64) -> f64 {
     let bend = left - 2.0 * middle + right;
     if bend < 0.0 { middle - 0.125 * (left - right) * (left - right) / bend } else { middle }
-}
-
-/// Slopes of all modes and values of the bubbles at a place.
-fn modes<const M: usize>(u: f64) -> (([f64; M], [f64; EXTRA]), [f64; M]) {
-    let x = 2.0 * u - 1.0;
-    let (mut slope, mut extra, mut value) = ([0.0; M], [0.0; EXTRA], [0.0; M]);
-    let (mut before, mut here) = (1.0, x);
-    for k in 2..M + EXTRA + 2 {
-        let n = k as f64;
-        let next = ((2.0 * n - 1.0) * x * here - (n - 1.0) * before) / n;
-        if k < M + 2 {
-            slope[k - 2] = root_of(k) * here;
-            value[k - 2] = (next - before) / (2.0 * root_of(k));
-        } else {
-            extra[k - 2 - M] = root_of(k) * here;
-        }
-        (before, here) = (here, next);
-    }
-    ((slope, extra), value)
 }
