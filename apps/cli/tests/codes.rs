@@ -49,7 +49,7 @@ const EDITS: &[(&str, &str, &str)] = &[
     ("E0507", "\"x = 0\"", "\"z = 0\""),
     ("E0508", "[0, -1]", "[0.1, -1]"),
     ("E0511", "[\"2.5 mm\", \"40 mm\"], support = \"slider\", direction = [0, 1] }", "[\"0 mm\", \"40 mm\"] }"),
-    ("W0507", "travel = \"6 mm\"", "travel = \"6 mm\"\nlimits = { clearance_min = { min = \"1 mm\" } }"),
+    ("W0509", "[process]", "[material.spare]\nuse = \"POM-C\"\n[process]"),
     ("E0510", "[design.nodes]", "[design.nodes]\nn9 = { at = [\"0 mm\", \"0 mm\"] }"),
 ];
 

@@ -32,6 +32,7 @@ use std::fmt;
 pub use closure::ChordSensitivity;
 pub use compute::Gradients;
 
+use crate::clearance::Reflection;
 use crate::state::Face;
 #[cfg(doc)]
 use crate::state::{BeamState, Point};
@@ -78,6 +79,16 @@ pub enum Output {
         u: f64,
         /// Which coordinate.
         axis: Axis,
+    },
+    /// The distance between the surfaces of two beams at given places, m, as [`crate::clearance()`] finds them: the derivative of the
+    /// clearance, since the places are those of least distance. Where axes cross there is none; it is that of the thicknesses alone.
+    Gap {
+        /// A beam and a place on it.
+        first: (usize, f64),
+        /// The other beam, or the same, and a place on it.
+        second: (usize, f64),
+        /// If the second place is on the mirror image, the mirror line.
+        reflection: Option<Reflection>,
     },
     /// One coordinate of the displacement of a node from rest, m.
     NodeDisplacement {

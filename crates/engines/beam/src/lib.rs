@@ -16,6 +16,7 @@
 
 mod arclength;
 mod assembly;
+mod clearance;
 mod counters;
 mod element;
 mod error;
@@ -32,7 +33,9 @@ mod shape;
 mod stability;
 mod state;
 mod stepping;
+mod through;
 
+pub use clearance::{Clearance, Place, Reflection, clearance, clearance_near};
 pub use counters::Counters;
 pub use error::{NetworkError, PathError, Status};
 pub use fast::{CurveSolver, Response};
@@ -43,3 +46,4 @@ pub use section::Section;
 pub use shape::{Shape, ShapeError};
 pub use stability::{Bifurcation, Fold, Jump};
 pub use state::{BeamState, Face, NodeState, PeakStress, Point};
+pub use through::ThroughError;

@@ -3,9 +3,10 @@
 mod common;
 
 use common::{SplitMix, add, exact, random_network};
+use forcewright_base::maths;
 use forcewright_beam::{
-    Axis, Beam, Drive, Face, Gradient, Joint, Joints, Network, Output, Parameter, Path, Point, Settings, Shape, Stage, Support, Theory,
-    trace,
+    Axis, Beam, Drive, Face, Gradient, Joint, Joints, Network, Output, Parameter, Path, Point, Reflection, Settings, Shape, Stage, Support,
+    Theory, trace,
 };
 
 fn parameters(network: &Network) -> Vec<Parameter> {
@@ -72,13 +73,23 @@ fn value(point: &Point, output: Output) -> f64 {
             beam.map_or_else(|| point.peak_stress().expect("there are beams").1, |b| point.beams[b].peak_stress()).stress_pa
         }
         Output::Position { beam, u, axis } => point.beams[beam].shape_m(u)[usize::from(axis == Axis::Y)],
+        Output::Gap { first, second, reflection } => {
+            let at = |(beam, u): (usize, f64)| point.beams[beam].shape_m(u);
+            let (a, b) = (at(first), reflection.map_or(at(second), |r| r.image(at(second))));
+            let half = |(beam, u): (usize, f64)| 0.5 * point.beams[beam].thickness_m(u);
+            maths::hypot(b[0] - a[0], b[1] - a[1]) - half(first) - half(second)
+        }
         Output::NodeDisplacement { node, axis } => point.nodes[node].displacement_m[usize::from(axis == Axis::Y)],
         Output::NodeRotation { node } => point.nodes[node].rotation_rad,
         _ => unreachable!(),
     }
 }
 
-const OUTPUTS: [Output; 9] = [
+const MIRROR: Reflection = Reflection { point_m: [0.0; 2], direction: [0.0, 1.0] };
+
+const OUTPUTS: [Output; 11] = [
+    Output::Gap { first: (0, 0.4), second: (2, 0.7), reflection: None },
+    Output::Gap { first: (3, 0.5), second: (2, 0.6), reflection: Some(MIRROR) },
     Output::Force,
     Output::Displacement,
     Output::Stiffness,

@@ -8,6 +8,7 @@ use forcewright_model as model;
 use crate::design::Design;
 use crate::force_curve::{Extrema, ForceCurve, Interval};
 use crate::metrics::METRICS;
+use crate::room::{Margin, Nearest, margin, nearest};
 
 /// Stations of the first attempt, and the most that are tried to keep the interpolation between them below its share of the error.
 const STATIONS: [usize; 4] = [128, 256, 512, 1024];
@@ -83,24 +84,39 @@ impl Behaviour {
         Self { path, curve, copies, whole, unstable_from_m, interpolation_error }
     }
 
-    /// The largest stress up to the end of the path, refined between stations where it is largest inside.
+    /// The largest stress up to the end of the path.
     pub fn largest_stress(&self) -> Option<LargestStress> {
-        let of = |point: &Point| point.peak_stress().map(|(beam, peak)| LargestStress { at_m: point.displacement, beam, peak });
+        self.worst_stress(|_| 1.0)
+    }
+
+    /// The largest stress relative to a strength that each beam has, Pa, refined between stations where it is largest inside. Beams of
+    /// infinite strength are left out.
+    pub fn worst_stress(&self, strength_pa: impl Fn(usize) -> f64) -> Option<LargestStress> {
+        let load = |s: &LargestStress| s.peak.stress_pa / strength_pa(s.beam);
+        let of = |point: &Point| {
+            let all = point.beams.iter().enumerate().filter(|(beam, _)| strength_pa(*beam).is_finite());
+            let all = all.map(|(beam, state)| LargestStress { at_m: point.displacement, beam, peak: state.peak_stress() });
+            // The first of equals, for the same answer everywhere.
+            all.reduce(|best, next| if load(&next) > load(&best) { next } else { best })
+        };
         let stations: Vec<LargestStress> = self.path.points.iter().filter_map(of).collect();
-        let best = (0..stations.len()).reduce(|b, i| if stations[i].peak.stress_pa > stations[b].peak.stress_pa { i } else { b })?;
-        let falling: Vec<f64> = stations.iter().map(|s| -s.peak.stress_pa).collect();
+        let falling: Vec<f64> = stations.iter().map(|s| -load(s)).collect();
+        let best = (0..stations.len()).reduce(|b, i| if falling[i] < falling[b] { i } else { b })?;
         if !may_be_inside(&falling, best) {
             return stations.get(best).copied();
         }
         let value = |x: f64| self.path.at(x).ok().and_then(|p| of(&p));
         let (left, right) = (stations[best.saturating_sub(1)].at_m, stations[(best + 1).min(stations.len() - 1)].at_m);
-        let found = forcewright_base::roots::minimise(|x| value(x).map_or(f64::NAN, |s| -s.peak.stress_pa), left, right, 1e-6 * right);
-        value(found.x).filter(|s| s.peak.stress_pa > stations[best].peak.stress_pa).or(stations.get(best).copied())
+        let found = forcewright_base::roots::minimise(|x| value(x).map_or(f64::NAN, |s| -load(&s)), left, right, 1e-6 * right);
+        value(found.x).filter(|s| load(s) > -falling[best]).or(stations.get(best).copied())
     }
 
-    /// The displacement at which the stress first reaches a value, m.
-    pub fn travel_at_stress(&self, stress_pa: f64) -> Option<f64> {
-        let excess = |p: &Point| p.peak_stress().map_or(f64::NAN, |(_, peak)| peak.stress_pa - stress_pa);
+    /// The displacement at which the first beam reaches its strength, Pa, which may be infinite, m.
+    pub fn travel_at_stress(&self, strength_pa: impl Fn(usize) -> f64) -> Option<f64> {
+        let excess = |p: &Point| {
+            let all = p.beams.iter().enumerate().map(|(beam, state)| state.peak_stress().stress_pa - strength_pa(beam));
+            all.reduce(|a, b| if b > a { b } else { a }).unwrap_or(f64::NAN)
+        };
         let first = self.path.points.iter().position(|p| excess(p) >= 0.0)?;
         let (before, after) = (self.path.points.get(first.checked_sub(1)?)?, &self.path.points[first]);
         let at = |x: f64| self.path.at(x).map_or(f64::NAN, |p| excess(&p));
@@ -179,8 +195,14 @@ pub struct Measured {
     pub usable: Option<Interval>,
     /// Largest stress and its place.
     pub stress: Option<LargestStress>,
+    /// Largest stress relative to the yield stress of its beam, among the beams whose yield stress is known.
+    pub loaded: Option<LargestStress>,
     /// Least stiffness and its displacement.
     pub stiffness: Option<(f64, f64)>,
+    /// Smallest distance between beams.
+    pub nearest: Option<Nearest>,
+    /// Smallest distance to the envelope, where one is required.
+    pub margin: Option<Margin>,
 }
 
 impl Measured {
@@ -209,7 +231,7 @@ const PAPER_BAND: f64 = 0.05;
 pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     let mut m = Measured { values: vec![None; METRICS.len()], ..Measured::default() };
     m.set("length_ratio_max", length_ratio(design));
-    m.set("mass", design.density_kg_per_m3.map(|density| density * design.copies() * volume_m3(design)));
+    m.set("mass", mass_kg(design));
     let Some(curve) = &behaviour.curve else { return m };
     m.set("stiffness_initial", behaviour.path.points.first().map(|p| behaviour.copies * p.stiffness));
     let Extrema { max, min } = behaviour.extrema();
@@ -217,12 +239,17 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m.set("force_local_max_at", max.map(|(x, _)| x));
     m.set("force_local_min", min.map(|(_, f)| f));
     m.set("force_local_min_at", min.map(|(x, _)| x));
-    if let Some(allowable_pa) = design.allowable_pa() {
-        m.set("travel_at_allowable_stress", behaviour.travel_at_stress(allowable_pa));
+    let beams = 0..design.network.beams.len();
+    if beams.clone().all(|beam| design.allowable_pa(beam).is_some()) {
+        m.set("travel_at_allowable_stress", behaviour.travel_at_stress(|beam| design.allowable_pa(beam).unwrap_or(f64::INFINITY)));
     }
     // Of a path that ends early these are only the values so far: checks use them, metrics do not.
     m.stiffness = behaviour.least_stiffness();
     m.stress = behaviour.largest_stress();
+    let one_yield = design.materials.iter().all(|other| other.yield_pa.is_some() && other.yield_pa == design.yield_pa(0));
+    m.loaded = if one_yield { m.stress } else { behaviour.worst_stress(|beam| design.yield_pa(beam).unwrap_or(f64::INFINITY)) };
+    m.nearest = nearest(design, behaviour);
+    m.margin = design.requirements.as_ref().and_then(|r| r.envelope).and_then(|envelope| margin(behaviour, &envelope));
     // The rest is about the whole travel: a path that ends before has no such numbers.
     if !behaviour.whole {
         return m;
@@ -255,8 +282,12 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
         m.usable = within;
     }
     m.set("stiffness_min", m.stiffness.map(|(k, _)| k));
+    m.set("clearance_min", m.nearest.map(|n| n.clearance.distance_m));
+    m.set("envelope_margin", m.margin.map(|e| e.margin_m));
     m.set("stress_max", m.stress.map(|s| s.peak.stress_pa));
-    m.set("safety_factor", m.stress.and_then(|s| Some(design.yield_pa? / s.peak.stress_pa)).filter(|f| f.is_finite()));
+    if beams.clone().all(|beam| design.yield_pa(beam).is_some()) {
+        m.set("safety_factor", m.loaded.and_then(|s| Some(design.yield_pa(s.beam)? / s.peak.stress_pa)).filter(|f| f.is_finite()));
+    }
     m
 }
 
@@ -268,8 +299,11 @@ fn length_ratio(design: &Design) -> Option<f64> {
     design.network.beams.iter().map(ratio).reduce(f64::max)
 }
 
-fn volume_m3(design: &Design) -> f64 {
-    design.network.beams.iter().map(|b| b.section.area_m2() * b.shape.length_m()).sum()
+/// Mass of all beams of the whole layout, kg, if every density is known.
+fn mass_kg(design: &Design) -> Option<f64> {
+    let beams = design.network.beams.iter().enumerate();
+    let masses = beams.map(|(i, b)| Some(design.material_of(i)?.density_kg_per_m3? * b.section.area_m2() * b.shape.length_m()));
+    Some(design.copies() * masses.sum::<Option<f64>>()?)
 }
 
 /// The unit in which people are shown a metric.

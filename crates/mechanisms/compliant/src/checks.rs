@@ -17,6 +17,7 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.extend(context.travel());
     all.extend(context.stress());
     all.extend(context.stiffness());
+    all.extend(context.envelope());
     all.extend(context.limits());
     all
 }
@@ -215,7 +216,10 @@ impl Context<'_> {
     /// COMP002: the largest stress.
     fn stress(&self) -> Option<Check> {
         let wanted = self.requirements.stress?;
-        let found = self.measured.stress;
+        // One stress for all beams, or the yield stress of each.
+        let found = if matches!(wanted, StressLimit::Stress(_)) { self.measured.stress } else { self.measured.loaded };
+        let allowable_pa = found.and_then(|s| self.design.allowable_pa(s.beam)).or(self.design.common_allowable_pa());
+        let unknown = (0..self.design.network.beams.len()).find(|beam| self.design.allowable_pa(*beam).is_none());
         let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
         let place = found.map_or_else(String::new, |s| {
             let beam = self.design.beam_names.get(s.beam).map_or("?", String::as_str);
@@ -226,14 +230,23 @@ impl Context<'_> {
         let until = self.measured.get("travel_at_allowable_stress").filter(useful).map_or_else(String::new, |x| {
             format!("keep `load.travel` at or below {}, or ", shown_below(x, &self.design.units.displacement))
         });
-        let ratio = found.zip(self.design.allowable_pa()).map_or(1.0, |(s, allowed)| s.peak.stress_pa / allowed);
+        let ratio = found.zip(allowable_pa).map_or(1.0, |(s, allowed)| s.peak.stress_pa / allowed);
         // Stretching changes with the thickness at equal bending stiffness, and the shape with it: 2 % to spare.
         let spare = if self.design.theory == Theory::Reissner { 0.98 } else { 1.0 };
         let thinner = rounded_down(spare / ratio, 3);
+        let of = match found.and_then(|s| self.design.material_of(s.beam)).map(|m| m.name.as_deref()) {
+            Some(name) if self.design.materials.len() > 1 => {
+                format!(
+                    "yield stress of {}, the beam that is nearest to its own",
+                    name.map_or("`material`".to_owned(), |n| format!("`material.{n}`"))
+                )
+            }
+            _ => "yield stress".to_owned(),
+        };
         let basis = match wanted {
-            StressLimit::Yield => "yield stress, since no `stress` requirement is given".to_owned(),
+            StressLimit::Yield => format!("{of}, since no `stress` requirement is given"),
             StressLimit::SafetyFactor(factor) => {
-                format!("yield stress over {}; Lan, Wang & Chen 2010, eq. (5) and constraint (iv)", format_number(factor, 4))
+                format!("{of} over {}; Lan, Wang & Chen 2010, eq. (5) and constraint (iv)", format_number(factor, 4))
             }
             StressLimit::Stress(_) => "stress given in the requirements; Lan, Wang & Chen 2010, eq. (5)".to_owned(),
         };
@@ -242,7 +255,7 @@ impl Context<'_> {
             name: "stress".to_owned(),
             title: format!("Largest stress{place}"),
             value: found.map(|s| s.peak.stress_pa),
-            limit: self.design.allowable_pa(),
+            limit: allowable_pa,
             sense: Sense::AtMost,
             dimension: Dimension::Stress,
             display: self.design.units.stress.clone(),
@@ -260,12 +273,12 @@ impl Context<'_> {
                     format_number(ratio, 3)
                 )
             },
-            missing: if self.design.yield_pa.is_none() {
-                "the yield stress is not known; give `material.yield_stress`".to_owned()
-            } else {
-                self.unreached()
+            missing: match unknown.map(|beam| self.design.material_of(beam).and_then(|m| m.name.as_ref())) {
+                Some(None) => "the yield stress is not known; give `material.yield_stress`".to_owned(),
+                Some(Some(name)) => format!("the yield stress of {name} is not known; give `material.{name}.yield_stress`"),
+                None => self.unreached(),
             },
-            partial: !self.behaviour.whole,
+            partial: !self.behaviour.whole || unknown.is_some(),
         };
         Some(comparison.judge())
     }
@@ -328,6 +341,36 @@ impl Context<'_> {
         all
     }
 
+    /// COMP007: inside the envelope.
+    fn envelope(&self) -> Option<Check> {
+        let envelope = self.requirements.envelope?;
+        let found = self.measured.margin;
+        let units = &self.design.units;
+        let place = found.map_or_else(String::new, |m| {
+            let beam = self.design.beam_names.get(m.beam).map_or("?", String::as_str);
+            let at = format_si(m.at_m, &units.displacement, 4);
+            format!(" (beam {beam}, u = {}, Δ = {at}{})", format_number(m.u, 3), self.so_far())
+        });
+        let sides = (0..2).map(|k| envelope.high_m[k] - envelope.low_m[k]).filter(|s| s.is_finite());
+        let comparison = Comparison {
+            code: "COMP007",
+            name: "envelope".to_owned(),
+            title: format!("Distance to the envelope{place}"),
+            value: found.map(|m| m.margin_m),
+            limit: Some(0.0),
+            sense: Sense::AtLeast,
+            dimension: Dimension::Length,
+            display: units.length.clone(),
+            scale: sides.reduce(f64::min),
+            basis: "surfaces of the drawn beams, at rest and over the travel; the margin is relative to the smaller side of the envelope"
+                .to_owned(),
+            fix: "move or reshape that beam, shorten the travel, or widen the envelope there".to_owned(),
+            missing: self.unreached(),
+            partial: !self.behaviour.whole,
+        };
+        Some(comparison.judge())
+    }
+
     /// COMP006: limits on metrics.
     fn limits(&self) -> Vec<Check> {
         let mut all = Vec::new();
@@ -348,10 +391,11 @@ impl Context<'_> {
                     scale: None,
                     basis: info.doc.to_owned(),
                     fix: "change the design, or relax the limit".to_owned(),
-                    missing: if matches!(info.name, "clearance_min" | "envelope_margin") {
-                        "this version does not compute it".to_owned()
-                    } else {
-                        "the design has no such value; see the status and the meaning of the metric".to_owned()
+                    missing: match info.name {
+                        _ if !self.behaviour.whole => self.unreached(),
+                        "envelope_margin" => "there is no envelope; give `requirements.envelope`".to_owned(),
+                        "clearance_min" => "no two surfaces of this design face each other; remove the limit".to_owned(),
+                        _ => "the design has no such value; see the status and the meaning of the metric".to_owned(),
                     },
                     partial: false,
                 };

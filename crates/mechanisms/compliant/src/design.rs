@@ -3,11 +3,10 @@
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Quantity, Unit};
-use forcewright_beam::{Beam, Drive, Joint, Network, Node, Rotation, Section, Shape, Support, Theory};
-use forcewright_contract::describe::{Located, Member, Origin};
-use forcewright_elements::materials::{self};
+use forcewright_beam::{Beam, Drive, Joint, Network, Node, Rotation, Section, Shape, Support, Theory, ThroughError};
+use forcewright_contract::describe::{Located, Member, Origin, Slot};
 
-use crate::material::{catalogue_entry, fill_material, material_sources};
+use crate::material::{Material, check_complete, fill_materials, typed_material};
 use crate::metrics::METRICS;
 use crate::rules::{check_held, check_mirror, check_network};
 use crate::spec::{self, Spec};
@@ -31,10 +30,10 @@ pub struct Design {
     pub direction: [f64; 2],
     /// Largest displacement d, m.
     pub travel_m: f64,
-    /// Yield stress, Pa, if known.
-    pub yield_pa: Option<f64>,
-    /// Density, kg/m³, if known.
-    pub density_kg_per_m3: Option<f64>,
+    /// What the beams are made of.
+    pub materials: Vec<Material>,
+    /// Index of the material of each beam, in the order of the network.
+    pub beam_materials: Vec<usize>,
     /// Beam model.
     pub theory: Theory,
     /// Error allowed, relative to the largest force.
@@ -43,12 +42,6 @@ pub struct Design {
     pub requirements: Option<Requirements>,
     /// Units in which people are shown results.
     pub units: DisplayUnits,
-    /// Where the material data come from, in words.
-    pub material_origin: String,
-    /// Keys of the works that catalogue values were taken from.
-    pub material_sources: Vec<&'static str>,
-    /// What the catalogue says about the material.
-    pub material_note: Option<&'static str>,
 }
 
 impl Design {
@@ -90,8 +83,19 @@ pub struct Requirements {
     pub stiffness_min: f64,
     /// Largest slope, N/m.
     pub stiffness_max: Option<f64>,
+    /// The box that the drawn network stays in with its thickness.
+    pub envelope: Option<Envelope>,
     /// Limits on metrics: index into [`METRICS`], smallest, largest, unit typed.
     pub limits: Vec<(usize, Option<f64>, Option<f64>, Unit)>,
+}
+
+/// A box along the axes of coordinates; a side may be infinitely far away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Envelope {
+    /// Least x and y, m.
+    pub low_m: [f64; 2],
+    /// Largest x and y, m.
+    pub high_m: [f64; 2],
 }
 
 /// What the stress is held against.
@@ -106,13 +110,30 @@ pub enum StressLimit {
 }
 
 impl Design {
-    /// The largest stress allowed, Pa, if one is asked for and the yield stress is known where it is needed.
-    pub fn allowable_pa(&self) -> Option<f64> {
+    /// The material of a beam.
+    pub fn material_of(&self, beam: usize) -> Option<&Material> {
+        self.materials.get(*self.beam_materials.get(beam)?)
+    }
+
+    /// Yield stress of a beam, Pa, if known.
+    pub fn yield_pa(&self, beam: usize) -> Option<f64> {
+        self.material_of(beam)?.yield_pa
+    }
+
+    /// The largest stress allowed in a beam, Pa, if one is asked for and the yield stress is known where it is needed.
+    pub fn allowable_pa(&self, beam: usize) -> Option<f64> {
         match self.requirements.as_ref()?.stress? {
-            StressLimit::Yield => self.yield_pa,
+            StressLimit::Yield => self.yield_pa(beam),
             StressLimit::Stress(stress_pa) => Some(stress_pa),
-            StressLimit::SafetyFactor(factor) => Some(self.yield_pa? / factor),
+            StressLimit::SafetyFactor(factor) => Some(self.yield_pa(beam)? / factor),
         }
+    }
+
+    /// The largest stress allowed, Pa, where it is the same in all beams.
+    pub fn common_allowable_pa(&self) -> Option<f64> {
+        let mut all = (0..self.network.beams.len()).map(|beam| self.allowable_pa(beam));
+        let first = all.next()??;
+        all.all(|other| other.is_some_and(|o| o.to_bits() == first.to_bits())).then_some(first)
     }
 }
 
@@ -139,13 +160,12 @@ fn quantity(slot: Option<&Located<Quantity>>) -> Option<&Quantity> {
     slot.map(|l| &l.value)
 }
 
-fn si(slot: Option<&Located<Quantity>>) -> Option<f64> {
+pub(crate) fn si(slot: Option<&Located<Quantity>>) -> Option<f64> {
     quantity(slot).map(|q| q.si)
 }
 
 /// Reads a design from what was typed. Everything wrong goes into `diagnostics`.
 pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
-    let material_origin = fill_material(&mut spec.material.body, diagnostics);
     let place = spec.design.present.as_ref().map(|p| p.span).unwrap_or_default();
     if spec.model.joints.as_ref().is_some_and(|j| j.value == "overlap") {
         let span = spec.model.joints.as_ref().map(|j| j.span).unwrap_or_default();
@@ -155,10 +175,11 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
                 .help("use \"point\"; the report says what rigid zones at the joints would add"),
         );
     }
-    let requirements = requirements_of(spec, diagnostics);
     // Members in the order of their names: the result does not depend on the order of the file.
     spec.design.nodes.sort_by(|a, b| a.name.value.cmp(&b.name.value));
     spec.design.beams.sort_by(|a, b| a.name.value.cmp(&b.name.value));
+    let used = fill_materials(spec, diagnostics);
+    let requirements = requirements_of(spec, used.materials.iter().all(|m| m.yield_pa.is_some()), diagnostics);
     let mut builder = Builder { spec, diagnostics, place };
     let (network, direction) = builder.network()?;
     let mirror = builder.mirror(direction);
@@ -183,15 +204,12 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         mirror,
         direction,
         travel_m: si(spec.load.travel.as_ref())?,
-        yield_pa: si(spec.material.yield_stress.as_ref()),
-        density_kg_per_m3: si(spec.material.density.as_ref()),
+        materials: used.materials,
+        beam_materials: used.of_beams,
         theory: theory_of(spec),
         accuracy: si(spec.model.accuracy.as_ref())?,
         requirements,
         units,
-        material_origin,
-        material_sources: material_sources(&spec.material),
-        material_note: catalogue_entry(&spec.material).and_then(|m| m.note.as_deref()),
     })
 }
 
@@ -208,7 +226,9 @@ fn display_units(spec: &Spec) -> DisplayUnits {
     let typed = spec.requirements.stiffness.min.as_ref().filter(|s| s.origin == Origin::File).map(|s| &s.value);
     let slope = format!("{}/{}", force.symbol(), displacement.symbol());
     let first_node = spec.design.nodes.iter().find_map(|n| n.value.at.as_ref()).map(|at| &at.value[0]);
-    let stress = spec.requirements.stress.max.as_ref().or(spec.material.yield_stress.as_ref().filter(|y| y.origin == Origin::File));
+    let all = [&spec.material.common].into_iter().chain(spec.material.named.iter().map(|m| &m.value));
+    let mut yields = all.filter_map(|m| m.yield_stress.as_ref());
+    let stress = spec.requirements.stress.max.as_ref().or(yields.find(|y| y.origin == Origin::File));
     DisplayUnits {
         stiffness: unit_or(typed, &slope, Dimension::Stiffness),
         length: unit_or(first_node, "mm", Dimension::Length),
@@ -218,7 +238,7 @@ fn display_units(spec: &Spec) -> DisplayUnits {
     }
 }
 
-fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Requirements> {
+fn requirements_of(spec: &Spec, yield_is_known: bool, diagnostics: &mut Diagnostics) -> Option<Requirements> {
     let requirements = &spec.requirements;
     requirements.present.as_ref()?;
     let stress = match (&requirements.stress.safety_factor, &requirements.stress.max) {
@@ -234,7 +254,7 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
         (Some(factor), None) => Some(StressLimit::SafetyFactor(factor.value.si)),
         (None, Some(max)) => Some(StressLimit::Stress(max.value.si)),
         // A part that yields does not do what its curve says, asked for or not.
-        (None, None) => spec.material.yield_stress.as_ref().map(|_| StressLimit::Yield),
+        (None, None) => yield_is_known.then_some(StressLimit::Yield),
     };
     // A value that was given but not understood has been reported: the table does not say nothing.
     let sound = !diagnostics.has_errors();
@@ -262,18 +282,13 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
                 }
                 continue;
             };
-            if METRICS.get(index).is_some_and(|m| NOT_COMPUTED.contains(&m.name)) {
-                diagnostics.push(
-                    Diagnostic::warning("W0507", section.span, "this version does not compute this metric")
-                        .label("will be not assessed")
-                        .help("a requirement that is not assessed does not count as met; remove the limit for now"),
-                );
-            }
             limits.push((index, min.map(|q| q.si), max.map(|q| q.si), unit));
         }
     }
     debug_assert_eq!(requirements.limits.bounds.len(), METRICS.len());
+    let envelope = envelope_of(requirements, sound, diagnostics);
     Some(Requirements {
+        envelope,
         force: si(requirements.force.band.as_ref()).map(|band| (band, si(requirements.force.nominal.as_ref()))),
         travel_m: si(requirements.travel.as_ref()),
         stress,
@@ -281,6 +296,29 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
         stiffness_max: si(requirements.stiffness.max.as_ref()),
         limits,
     })
+}
+
+/// The box; a side that is not given is infinitely far away.
+fn envelope_of(requirements: &spec::Requirements, sound: bool, diagnostics: &mut Diagnostics) -> Option<Envelope> {
+    let section = requirements.envelope.present.as_ref()?;
+    let (x, y) = (&requirements.envelope.x, &requirements.envelope.y);
+    if sound && x.is_none() && y.is_none() {
+        diagnostics.push(
+            Diagnostic::error("E0302", section.span, "`envelope` says nothing")
+                .label("from this table")
+                .help("give `x = [\"0 mm\", \"40 mm\"]`, or `y`, or both"),
+        );
+    }
+    for side in [x, y].into_iter().flatten().filter(|s| s.value[0].si >= s.value[1].si) {
+        diagnostics.push(
+            Diagnostic::error("E0204", side.span, format!("from {} to {} there is no room", side.value[0], side.value[1]))
+                .label("not in ascending order")
+                .help("write the smaller value first"),
+        );
+    }
+    let range = |side: &Slot<[Quantity; 2]>| side.as_ref().map_or([f64::NEG_INFINITY, f64::INFINITY], |s| [s.value[0].si, s.value[1].si]);
+    let ([left, right], [bottom, top]) = (range(x), range(y));
+    Some(Envelope { low_m: [left, bottom], high_m: [right, top] })
 }
 
 /// A force band holds over a stroke, and the stroke lies inside the travel.
@@ -315,9 +353,6 @@ fn check_stroke(spec: &Spec, sound: bool, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Names of the language that this version cannot fill.
-const NOT_COMPUTED: [&str; 2] = ["clearance_min", "envelope_margin"];
-
 struct Builder<'a> {
     spec: &'a Spec,
     diagnostics: &'a mut Diagnostics,
@@ -335,6 +370,8 @@ struct Drawn<'a> {
 enum ShapeForm {
     /// Coefficients c1…cm; c0 and the length follow from the nodes.
     Bend(Vec<f64>),
+    /// Points of the axis.
+    Through(Vec<Located<[f64; 2]>>),
     /// The whole shape; the nodes follow from it.
     Whole(Shape),
 }
@@ -364,14 +401,14 @@ impl Builder<'_> {
     /// The network with its drive and the direction of the drive; `None` after errors.
     fn network(&mut self) -> Option<(Network, [f64; 2])> {
         let spec = self.spec;
+        self.check_materials();
         let drawn: Vec<Option<Drawn<'_>>> = spec.design.beams.iter().map(|b| self.drawn(b)).collect();
         let supports: Vec<Option<Support>> = spec.design.nodes.iter().map(|n| self.support(n)).collect();
         let load_node = spec.load.node.as_ref().and_then(|n| self.node(&n.value, n.span));
-        let section = self.section();
         let direction = spec.load.direction.as_ref().map(|d| unit(d.value))?;
         let drawn: Vec<Drawn<'_>> = drawn.into_iter().collect::<Option<_>>()?;
         let positions = self.positions(&drawn)?;
-        let beams: Vec<Option<Beam>> = drawn.iter().map(|d| self.beam(d, &positions, section)).collect();
+        let beams: Vec<Option<Beam>> = drawn.iter().map(|d| self.beam(d, &positions)).collect();
         let beams = beams.into_iter().collect::<Option<Vec<_>>>()?;
         let nodes = positions
             .iter()
@@ -414,6 +451,7 @@ impl Builder<'_> {
             beam.bend.as_ref().map(|l| (l.span, "bend")),
             beam.straight.as_ref().filter(|s| s.value).map(|l| (l.span, "straight")),
             beam.arc.as_ref().map(|l| (l.span, "arc")),
+            beam.through.as_ref().map(|l| (l.span, "through")),
             beam.angle.as_ref().map(|l| (l.span, "angle")),
         ]
         .into_iter()
@@ -425,7 +463,7 @@ impl Builder<'_> {
                 self.error(
                     Diagnostic::error("E0302", name.span, format!("beam `{}` has no shape", name.value))
                         .label("this beam")
-                        .help("give `bend = [c1, …]`, `straight = true`, `arc = \"30 deg\"`, or `angle = [c0, …]` with `length`"),
+                        .help("give `bend = [c1, …]`, `straight = true`, `arc = \"30 deg\"`, `through = [[x, y], …]`, or `angle = [c0, …]` with `length`"),
                 );
                 None
             }
@@ -442,6 +480,10 @@ impl Builder<'_> {
                 }
                 if let Some(arc) = &beam.arc {
                     return Some(ShapeForm::Bend(vec![arc.value.si]));
+                }
+                if let Some(points) = &beam.through {
+                    let si = |p: &Located<[Quantity; 2]>| Located::new([p.value[0].si, p.value[1].si], p.span);
+                    return Some(ShapeForm::Through(points.value.iter().map(si).collect()));
                 }
                 let Some(angle) = &beam.angle else { return Some(ShapeForm::Bend(Vec::new())) };
                 let Some(length) = &beam.length else {
@@ -507,33 +549,21 @@ impl Builder<'_> {
         }
     }
 
-    /// E, ν and depth; thickness is the beam's.
-    fn section(&mut self) -> Option<Section> {
-        let material = &self.spec.material;
-        let place = material.present.as_ref().map_or(self.place, |p| p.span);
-        // An unknown entry of the catalogue has been reported; what it would have given is not missing as well.
-        let complete = material.present.is_some() && material.catalogue.as_ref().is_none_or(|c| materials::find(&c.value).is_some());
-        if material.young_modulus.is_none() && complete {
-            self.error(
-                Diagnostic::error("E0302", place, "`young_modulus` is missing")
-                    .label("from this table")
-                    .help("give `use = \"POM-C\"` or another entry of the catalogue, or `young_modulus = \"2 GPa\"`"),
-            );
+    /// Every material that a beam is of is complete.
+    fn check_materials(&mut self) {
+        let spec = self.spec;
+        let shear = theory_of(spec) == Theory::Reissner;
+        let of_beams = || spec.design.beams.iter().map(|b| b.value.material.as_ref());
+        if let Some(table) = &spec.material.present
+            && (of_beams().any(|b| b.is_none()) || spec.design.beams.is_empty())
+        {
+            check_complete(&spec.material.common, table.span, shear, self.diagnostics);
         }
-        let poisson = si(material.poisson_ratio.as_ref());
-        if poisson.is_none() && theory_of(self.spec) == Theory::Reissner && material.young_modulus.is_some() && complete {
-            self.error(
-                Diagnostic::error("E0302", place, "`poisson_ratio` is missing")
-                    .label("from this table")
-                    .help("the Reissner model needs it for the shear stiffness; give it, or `use` a catalogue entry, or choose `model.beam = \"inextensible\"`"),
-            );
+        for member in &spec.material.named {
+            if of_beams().flatten().any(|b| b.value == member.name.value) {
+                check_complete(&member.value, member.name.span, shear, self.diagnostics);
+            }
         }
-        Some(Section {
-            young_pa: si(material.young_modulus.as_ref())?,
-            thickness_m: si(self.spec.design.thickness.as_ref()).unwrap_or(f64::NAN),
-            depth_m: si(self.spec.design.depth.as_ref())?,
-            poisson,
-        })
     }
 
     /// Positions of all nodes: as typed, or following from beams given as a whole.
@@ -565,13 +595,14 @@ impl Builder<'_> {
         at.into_iter().collect()
     }
 
-    fn beam(&mut self, drawn: &Drawn<'_>, at: &[[f64; 2]], section: Option<Section>) -> Option<Beam> {
+    fn beam(&mut self, drawn: &Drawn<'_>, at: &[[f64; 2]]) -> Option<Beam> {
         let (member, beam) = (drawn.member, &drawn.member.value);
         let name = &member.name.value;
         let (from, to) = (at[drawn.start], at[drawn.end]);
         let chord = [to[0] - from[0], to[1] - from[1]];
         let shape = match &drawn.form {
             ShapeForm::Whole(shape) => shape.clone(),
+            ShapeForm::Through(points) => self.through(name, from, chord, points)?,
             ShapeForm::Bend(bend) => match Shape::from_chord(chord, bend) {
                 Ok(shape) => shape,
                 Err(error) => {
@@ -598,8 +629,38 @@ impl Builder<'_> {
         };
         let joint = |node: usize| if hinged(node) { Joint::Hinged } else { Joint::Rigid };
         let (start_joint, end_joint) = (joint(drawn.start), joint(drawn.end));
-        let section = Section { thickness_m: thickness_m?, ..section? };
+        let material = typed_material(self.spec, beam)?;
+        let section = Section {
+            young_pa: si(material.young_modulus.as_ref())?,
+            thickness_m: thickness_m?,
+            depth_m: si(self.spec.design.depth.as_ref())?,
+            poisson: si(material.poisson_ratio.as_ref()),
+        };
         Some(Beam { start_joint, end_joint, ..Beam::new(drawn.start, drawn.end, shape, section) })
+    }
+
+    /// The shape through points; a fault is reported at the point.
+    fn through(&mut self, name: &str, from: [f64; 2], chord: [f64; 2], points: &[Located<[f64; 2]>]) -> Option<Shape> {
+        let relative: Vec<[f64; 2]> = points.iter().map(|p| [p.value[0] - from[0], p.value[1] - from[1]]).collect();
+        let error = match Shape::through(chord, &relative) {
+            Ok(shape) => return Some(shape),
+            Err(error) => error,
+        };
+        let beams = &self.spec.design.beams;
+        let all = beams.iter().find(|b| b.name.value == name).and_then(|b| b.value.through.as_ref()).map_or(self.place, |t| t.span);
+        let at = |point: usize| points.get(point).map_or(all, |p| p.span);
+        let (span, help) = match error {
+            ThroughError::OnTheOneBefore { point } if point == points.len() => {
+                (all, "leave out the last point: the node follows by itself")
+            }
+            ThroughError::OnTheOneBefore { point: 0 } => (at(0), "leave it out: the beam starts at its node by itself"),
+            ThroughError::OnTheOneBefore { point } => (at(point), "leave out one of the two"),
+            ThroughError::TurnsBack { point } => (at(point), "list the points in their order along the beam"),
+            ThroughError::Loops { point } => (at(point), "add a point on the piece before it, or move it"),
+            _ => (all, "take fewer points, or move them onto a smoother curve"),
+        };
+        self.error(Diagnostic::error("E0503", span, format!("beam `{name}`: {error}")).label("this shape").help(help));
+        None
     }
 
     /// `x = 0` or `y = 2 mm`; the load must move along the line.

@@ -32,7 +32,12 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "COMP006",
         "limit on a metric",
-        "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have, or that this version does not compute, is *not assessed*, which does not count as met.",
+        "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have is *not assessed*, which does not count as met.",
+    ),
+    code(
+        "COMP007",
+        "envelope",
+        "Smallest distance of the surfaces of the drawn beams to the sides of `requirements.envelope`, at rest and over the travel; negative where a beam sticks out. The mirrored half stays in the mirrored envelope. Blocks and clamps are not looked at.\n\nThe end of a beam is cut square: ending on a side at a right angle, it touches the side and the distance is 0. The design box of Lan, Wang & Chen 2010 (Table 1, constraint (ii)) holds the axes, with n1, n2 and n5 on its sides; to ask for the same, widen it by half the thickness.",
     ),
     code(
         "E0501",
@@ -47,7 +52,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "E0503",
         "impossible shape",
-        "The bend coefficients make the beam close on itself, so that it cannot span its two nodes, or the nodes lie on each other.",
+        "The bend coefficients make the beam close on itself, so that it cannot span its two nodes, or the nodes lie on each other.\n\nPoints of `through` give the smooth shape with as many bend coefficients as there are points, whose axis meets all of them in order: one point gives an arc. Between two points the curve must run forward from the one to the other, less than a quarter turn off; points that zigzag need coefficients that cancel each other, and are refused.",
     ),
     code("E0504", "slider and direction", "A slider needs the direction in which it moves; only sliders have a direction and a rotation."),
     code(
@@ -96,13 +101,13 @@ pub(crate) const CODES: &[Explanation] = &[
         "With the displacement of the load held, the network could still lower its energy by moving sideways: at the named displacement the path bifurcates, as a straight column does at its buckling load. The computed curve is an equilibrium, but a real part, which is never perfectly symmetric, leaves it. Give the design a small imperfection (a bend, a shifted node) to follow the branch that the part takes.",
     ),
     code(
-        "W0507",
-        "a limit cannot be assessed",
-        "The metric is part of the language, but this version does not compute it. The requirement will be *not assessed*, which does not count as met (exit code 1).",
-    ),
-    code(
         "W0508",
         "beams cross",
         "The axes of two beams, of a beam with itself, or of a beam with the mirror line (and so with the other half) intersect. In a plane part that is contact, which is not modelled: the curve holds only up to the named displacement. Only axes are tested; beams of finite thickness touch a little earlier.",
+    ),
+    code(
+        "W0509",
+        "a material that no beam is of",
+        "`[material.<name>]` describes a material for beams that say `material = \"<name>\"`. None does: perhaps the name is misspelt, or the line at the beam is missing.",
     ),
 ];

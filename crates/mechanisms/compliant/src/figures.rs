@@ -172,17 +172,19 @@ fn stress_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) ->
     let points = &behaviour.path.points;
     let x: Vec<f64> = points.iter().map(|p| p.displacement).collect();
     let mut levels = Vec::new();
-    if let Some(allowed) = design.allowable_pa() {
+    if let Some(allowed) = design.common_allowable_pa() {
         levels.push(HorizontalLine {
             at: allowed,
             label: format!("allowed: {}", format_si(allowed, &design.units.stress, 4)),
             stroke: Stroke::Limit,
         });
     }
-    if let Some(yield_pa) = design.yield_pa {
+    for material in &design.materials {
+        let Some(yield_pa) = material.yield_pa else { continue };
+        let of = material.name.as_ref().filter(|_| design.materials.len() > 1).map_or_else(String::new, |name| format!(" of {name}"));
         levels.push(HorizontalLine {
             at: yield_pa,
-            label: format!("yield: {}", format_si(yield_pa, &design.units.stress, 4)),
+            label: format!("yield{of}: {}", format_si(yield_pa, &design.units.stress, 4)),
             stroke: Stroke::Reference,
         });
     }

@@ -13,6 +13,7 @@ mod force_curve;
 mod material;
 mod metrics;
 mod reproduce;
+mod room;
 mod rules;
 mod scene;
 mod spec;
@@ -24,9 +25,11 @@ use forcewright_model::{Counter, Outcome, Status, StatusKind};
 
 pub use analysis::{Behaviour, LargestStress, Measured, measure};
 pub use crossing::{Crossing, first_crossing};
-pub use design::{Design, DisplayUnits, Mirror, Requirements, StressLimit};
+pub use design::{Design, DisplayUnits, Envelope, Mirror, Requirements, StressLimit};
 pub use force_curve::{Extrema, ForceCurve, Interval};
+pub use material::Material;
 pub use metrics::{METRICS, MetricInfo};
+pub use room::{Margin, Nearest, margin, nearest};
 pub use spec::Spec;
 
 /// The family.

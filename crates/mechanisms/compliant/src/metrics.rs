@@ -49,5 +49,10 @@ pub const METRICS: &[MetricInfo] = &[
         false,
         "Smallest distance between beam surfaces over the travel, outside the joints that they share.",
     ),
-    metric("envelope_margin", Dimension::Length, false, "Smallest distance of the mechanism to its envelope over the travel."),
+    metric(
+        "envelope_margin",
+        Dimension::Length,
+        false,
+        "Smallest distance of the surfaces of the drawn beams to the envelope, at rest and over the travel.",
+    ),
 ];

@@ -17,6 +17,7 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured)
     let artist = Artist { design, size_m: size_m(design) };
     let mut items = Vec::new();
     artist.mirror_line(&mut items);
+    artist.envelope(&mut items);
     artist.beams(&mut items, None);
     if let Some(point) = last {
         artist.block(&mut items, point);
@@ -27,9 +28,10 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured)
     if let Some(point) = last {
         artist.load(&mut items, behaviour, point);
         artist.peak(&mut items, measured, point);
+        artist.nearest(&mut items, measured, point);
     }
     let largest = last.and_then(Point::peak_stress).map_or(0.0, |(_, peak)| peak.stress_pa);
-    let limit = design.allowable_pa().map(|pa| (pa, "allowed".to_owned()));
+    let limit = design.common_allowable_pa().map(|pa| (pa, "allowed".to_owned()));
     let scale_end = limit.as_ref().map_or(largest, |(pa, _)| largest.max(*pa));
     let reached = last.map_or_else(String::new, |p| format_si(p.displacement, &design.units.displacement, 4));
     Scene {
@@ -217,6 +219,28 @@ impl Artist<'_> {
             format_si(point.displacement, &units.displacement, 4)
         );
         items.push(Item::Arrow { from: tail, to: head, label });
+    }
+
+    fn envelope(&self, items: &mut Vec<Item>) {
+        let Some(envelope) = self.design.requirements.as_ref().and_then(|r| r.envelope) else { return };
+        let ([left, bottom], [right, top]) = (envelope.low_m, envelope.high_m);
+        // An open side has no corner to draw.
+        if [left, bottom, right, top].iter().all(|v| v.is_finite()) {
+            let points = vec![[left, bottom], [right, bottom], [right, top], [left, top], [left, bottom]];
+            items.push(Item::Line { points, width_m: 0.0, role: Role::Construction, values: None });
+        }
+    }
+
+    /// The place where beams come nearest to each other, if the picture shows the state.
+    fn nearest(&self, items: &mut Vec<Item>, measured: &Measured, point: &Point) {
+        let Some(nearest) = measured.nearest else { return };
+        let shown = nearest.at_m <= 0.0 || nearest.at_m >= point.displacement * (1.0 - 1e-9);
+        if shown {
+            let (p, q) = (nearest.clearance.first.point_m, nearest.clearance.second.point_m);
+            let at = [f64::midpoint(p[0], q[0]), f64::midpoint(p[1], q[1])];
+            let label = format!("clearance {}", format_si(nearest.clearance.distance_m, &self.design.units.length, 3));
+            items.push(Item::Marker { at, label });
+        }
     }
 
     fn peak(&self, items: &mut Vec<Item>, measured: &Measured, point: &Point) {

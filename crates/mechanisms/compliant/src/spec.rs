@@ -1,6 +1,7 @@
 //! The project file of a compliant mechanism as it is typed: every parameter is described here, once.
 
 use forcewright_base::units::{Dimension, Quantity};
+use forcewright_beam::Shape;
 use forcewright_contract::describe::{Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
 
@@ -14,7 +15,7 @@ pub struct Spec {
     /// `[requirements]`
     pub(crate) requirements: Section<Requirements>,
     /// `[material]`
-    pub(crate) material: Section<Material>,
+    pub(crate) material: Section<Materials>,
     /// `[process]`
     pub(crate) process: Section<Process>,
     /// `[design]`
@@ -34,7 +35,15 @@ pub(crate) struct Requirements {
     pub travel: Slot<Quantity>,
     pub stress: Section<StressRequirement>,
     pub stiffness: Section<StiffnessRequirement>,
+    pub envelope: Section<Envelope>,
     pub limits: Section<Limits>,
+}
+
+/// The box that the drawn network stays in.
+#[derive(Debug, Default)]
+pub(crate) struct Envelope {
+    pub x: Slot<[Quantity; 2]>,
+    pub y: Slot<[Quantity; 2]>,
 }
 
 /// A force level and how far from it the force may be.
@@ -79,8 +88,15 @@ pub(crate) struct Bounds {
     pub max: Slot<Quantity>,
 }
 
-/// What the beams are made of.
+/// What the beams are made of: the material of all that name none, and those that are named.
 #[derive(Debug, Default)]
+pub(crate) struct Materials {
+    pub common: Material,
+    pub named: Vec<Member<Material>>,
+}
+
+/// A material.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Material {
     pub catalogue: Slot<String>,
     pub young_modulus: Slot<Quantity>,
@@ -121,9 +137,11 @@ pub(crate) struct Beam {
     pub bend: Slot<Vec<f64>>,
     pub straight: Slot<bool>,
     pub arc: Slot<Quantity>,
+    pub through: Slot<Vec<Located<[Quantity; 2]>>>,
     pub angle: Slot<Vec<f64>>,
     pub length: Slot<Quantity>,
     pub thickness: Slot<Quantity>,
+    pub material: Slot<String>,
     pub hinged: Slot<Vec<Located<String>>>,
 }
 
@@ -200,10 +218,6 @@ const RESERVED_NODE: &[Reserved] = &[Reserved {
     instead: "it restricts an optimiser, which this version does not have; `solve` does not need it",
     ignored: true,
 }];
-const RESERVED_BEAM: &[Reserved] = &[
-    Reserved { key: "through", instead: "give the shape by `bend`, `arc`, `straight`, or `angle` with `length`", ignored: false },
-    Reserved { key: "material", instead: "all beams are of `[material]` in this version", ignored: false },
-];
 const RESERVED_LAYOUT: &[Reserved] = &[
     Reserved { key: "array", instead: "draw every copy, or use `mirror`", ignored: false },
     Reserved { key: "circular", instead: "draw every copy, or use `mirror`", ignored: false },
@@ -214,8 +228,6 @@ const RESERVED_LOAD: &[Reserved] = &[
     Reserved { key: "moment", instead: "prescribe `travel`", ignored: false },
     Reserved { key: "rotation", instead: "prescribe `travel`", ignored: false },
 ];
-const RESERVED_REQUIREMENTS: &[Reserved] =
-    &[Reserved { key: "envelope", instead: "the envelope is not assessed in this version", ignored: false }];
 
 impl Describe for Spec {
     fn describe(&mut self, v: &mut dyn Visitor) {
@@ -243,8 +255,14 @@ impl Describe for Requirements {
         self.stress.describe(v, &Param::new("stress", "Stress allowed over the whole travel."));
         self.stiffness
             .describe(v, &Param::new("stiffness", "Slope dF/dΔ over the whole travel; without this section, no negative stiffness."));
+        self.envelope.describe(
+            v,
+            &Param::new(
+                "envelope",
+                "Box in which the beams of the drawn network stay with their thickness, at rest and over the whole travel.",
+            ),
+        );
         self.limits.describe(v, &Param::new("limits", "Limits on any metric, by its name."));
-        v.reserved(RESERVED_REQUIREMENTS);
     }
 }
 
@@ -273,6 +291,14 @@ impl Describe for StiffnessRequirement {
     }
 }
 
+impl Describe for Envelope {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let side = |key, doc| Param::new(key, doc).of(Dimension::Length).within(-LARGEST_M, LARGEST_M);
+        v.point(&side("x", "From left to right, two values of x; without it any x."), &mut self.x);
+        v.point(&side("y", "From bottom to top, two values of y; without it any y."), &mut self.y);
+    }
+}
+
 impl Describe for Limits {
     fn describe(&mut self, v: &mut dyn Visitor) {
         for (info, bounds) in METRICS.iter().zip(&mut self.bounds) {
@@ -285,6 +311,16 @@ impl Describe for Bounds {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.quantity(&Param::new("min", "Smallest value.").of(self.dimension), &mut self.min);
         v.quantity(&Param::new("max", "Largest value.").of(self.dimension), &mut self.max);
+    }
+}
+
+impl Describe for Materials {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        self.common.describe(v);
+        v.tables(
+            &Param::new("*", "A material that beams name by `material`; the keys beside it are those of the other beams."),
+            &mut self.named,
+        );
     }
 }
 
@@ -355,6 +391,16 @@ impl Describe for Beam {
                 .within(-6.2, 6.2),
             &mut self.arc,
         );
+        v.points(
+            &Param::new(
+                "through",
+                "Points [x, y] of its axis in order, without the nodes: the smooth shape with as many bend coefficients.",
+            )
+            .of(Dimension::Length)
+            .within(-LARGEST_M, LARGEST_M),
+            Shape::MOST_POINTS,
+            &mut self.through,
+        );
         v.numbers(
             &Param::new("angle", "Coefficients c0…cm of the intrinsic angle in rad, with `length`; the nodes then follow.")
                 .within(-50.0, 50.0),
@@ -368,8 +414,8 @@ impl Describe for Beam {
             &Param::new("thickness", "Its own in-plane thickness w.").of(Dimension::Length).within(SMALLEST_M, 1.0),
             &mut self.thickness,
         );
+        v.text(&Param::new("material", "Its own material, by its name in `[material]`."), &mut self.material);
         v.names(&Param::new("hinged", "Ends, by their nodes, that turn freely."), 0, 2, &mut self.hinged);
-        v.reserved(RESERVED_BEAM);
     }
 }
 

@@ -45,11 +45,22 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
             "Stress",
             "Bending and, in the geometrically exact model, axial stress, on both faces, over the whole length; the largest over the travel.",
         ),
-        statement(
-            "Material data",
-            format!("{}.{}", design.material_origin, design.material_note.map_or_else(String::new, |n| format!(" {}", n.trim()))),
-        ),
+        statement("Material data", material_data(design)),
     ]
+}
+
+/// Where the data of each material come from.
+fn material_data(design: &Design) -> String {
+    let all = design.materials.iter().enumerate().map(|(index, material)| {
+        let beams = (0..design.beam_names.len()).filter(|b| design.beam_materials[*b] == index).map(|b| design.beam_names[b].as_str());
+        let of = match &material.name {
+            _ if design.materials.len() == 1 => String::new(),
+            Some(name) => format!("{name} ({}): ", beams.collect::<Vec<_>>().join(", ")),
+            None => format!("Beams {}: ", beams.collect::<Vec<_>>().join(", ")),
+        };
+        format!("{of}{}.{}", material.origin, material.note.map_or_else(String::new, |n| format!(" {}", n.trim())))
+    });
+    all.collect::<Vec<_>>().join(" ")
 }
 
 /// What is not modelled.
@@ -91,7 +102,13 @@ pub(crate) fn sources(design: &Design) -> Vec<Citation> {
             used_for: "stretching and shear of beams under large rotation",
         });
     }
-    for key in &design.material_sources {
+    let mut keys: Vec<&'static str> = Vec::new();
+    for key in design.materials.iter().flat_map(|m| &m.sources) {
+        if !keys.contains(key) {
+            keys.push(key);
+        }
+    }
+    for key in keys {
         all.push(Citation { key, text: "Source of material data; see REFERENCES.bib.", used_for: "values of the material catalogue" });
     }
     all
@@ -115,7 +132,7 @@ fn curved_beams(design: &Design, measured: &Measured) -> Option<Warning> {
     let at_peak = measured.stress.and_then(|s| {
         let factor = 1.0 + curvature_ratio(design.network.beams.get(s.beam)?, s.peak.u) / 3.0;
         let corrected = factor * s.peak.stress_pa;
-        let verdict = match design.allowable_pa() {
+        let verdict = match design.allowable_pa(s.beam) {
             Some(allowed) if s.peak.stress_pa <= allowed && corrected > allowed => ", which is more than allowed",
             Some(allowed) if corrected <= allowed => ", still allowed",
             _ => "",
@@ -163,7 +180,7 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             message: format!("loaded by a growing force (a weight) the mechanism would jump from Δ = {} {target}{stays}", show(from)),
         });
     }
-    if let (Some(stress), Some(yield_pa)) = (measured.stress, design.yield_pa)
+    if let Some((stress, yield_pa)) = measured.loaded.and_then(|s| Some((s, design.yield_pa(s.beam)?)))
         && stress.peak.stress_pa > yield_pa
     {
         let unit = Unit::clone(&design.units.stress);
@@ -173,7 +190,9 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
                 "the stress in beam `{}` exceeds the yield stress of {}{}: beyond that the curve is not that of the real part",
                 name(stress.beam),
                 format_si(yield_pa, &unit, 4),
-                behaviour.travel_at_stress(yield_pa).map_or_else(String::new, |x| format!(" from Δ = {} on", show(x)))
+                behaviour
+                    .travel_at_stress(|beam| design.yield_pa(beam).unwrap_or(f64::INFINITY))
+                    .map_or_else(String::new, |x| format!(" from Δ = {} on", show(x)))
             ),
         });
     }

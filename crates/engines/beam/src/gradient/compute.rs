@@ -1,13 +1,16 @@
 //! Gradients of outputs at the points of a path.
 
+use forcewright_base::maths;
+
 use super::{
-    Gradient, GradientError, Output,
+    Axis, Gradient, GradientError, Output,
     closure::ChordSensitivity,
-    field::{self, BeamRhs, Field, Sensitivity},
+    field::{self, BeamRhs, Field, Place, Sensitivity},
     seed::{Seed, polished_place, position_slope, stress_slope},
 };
 use crate::{
     assembly::{Resolution, System},
+    clearance::Reflection,
     counters::Counters,
     model::{Model, swing},
     network::is_zero,
@@ -149,6 +152,10 @@ impl<'p> Gradients<'p> {
 
     fn check(&self, output: &Output, point: &Point) -> Result<(), GradientError> {
         let beams = self.model.spans.len();
+        if let Output::Gap { first, second, .. } = *output {
+            // Both are positions, and may be asked for where these may.
+            return [first, second].into_iter().try_for_each(|(beam, u)| self.check(&Output::Position { beam, u, axis: Axis::X }, point));
+        }
         match *output {
             Output::Stress { beam, .. } | Output::PeakStress { beam: Some(beam) } | Output::Position { beam, .. } if beam >= beams => {
                 Err(GradientError::NoBeam { beam })
@@ -264,6 +271,7 @@ impl<'p> Gradients<'p> {
                 parts.unit = model.length_m;
                 self.add_position(&mut parts, point, fields, state, (beam, u, axis.unit()));
             }
+            Output::Gap { first, second, reflection } => self.add_gap(&mut parts, point, fields, state, (first, second, reflection)),
             Output::NodeDisplacement { node, axis } => {
                 parts.unit = model.length_m;
                 self.add_translation(&mut parts, node, axis.unit());
@@ -313,6 +321,37 @@ impl<'p> Gradients<'p> {
         let index = span.start + last;
         let slope = position_slope(&fields[index], &point.beams[beam].pieces()[last], v, axis);
         parts.design.pieces[index].add_sliding(&fields[index].info.range, u, slope);
+    }
+
+    /// The distance of two places less half of both thicknesses.
+    fn add_gap(
+        &self,
+        parts: &mut Dependence,
+        point: &Point,
+        fields: &[Field],
+        state: &[f64],
+        (first, second, reflection): ((usize, f64), (usize, f64), Option<Reflection>),
+    ) {
+        let unit = self.model.length_m;
+        parts.unit = unit;
+        let (a, b) = (point.beams[first.0].shape_m(first.1), point.beams[second.0].shape_m(second.1));
+        let b = reflection.map_or(b, |r| r.image(b));
+        let apart = [b[0] - a[0], b[1] - a[1]];
+        let distance = maths::hypot(apart[0], apart[1]);
+        if distance > 1e-9 * unit {
+            let along = apart.map(|d| d / distance);
+            self.add_position(parts, point, fields, state, (first.0, first.1, along.map(|c| -c)));
+            // A reflection is its own transpose.
+            let seen = reflection.map_or(along, |r| r.turn(along));
+            self.add_position(parts, point, fields, state, (second.0, second.1, seen));
+        }
+        for (beam, u) in [first, second] {
+            let (piece, inner, v) = point.beams[beam].piece_at(u);
+            let half = 0.5 * inner.info.section_at(v).thickness_m / unit;
+            let sum = &mut parts.design.pieces[self.model.spans[beam].0.start + piece];
+            sum.thickness -= half;
+            sum.add_thickness(&Place::new(&inner.info, v), -half);
+        }
     }
 
     fn add_stress(&self, parts: &mut Dependence, state: &BeamState, fields: &[Field], at: (usize, usize, f64, Face, f64)) {

@@ -1,5 +1,8 @@
 //! The paper's numbers beside ours. The printed ones are data (`reference/lan2010.toml`); ours are computed in the run.
 
+mod beam_forces;
+mod end_effector;
+
 use forcewright_base::diagnostics::{Diagnostics, Span};
 use forcewright_base::maths;
 use forcewright_beam::Shape;
@@ -13,13 +16,15 @@ use crate::design::{self, Design};
 use crate::force_curve::{ForceCurve, Interval};
 use crate::spec::Spec;
 
+use end_effector::EndEffector;
+
 /// The papers of this family.
 pub(crate) static ALL: &[Reproduction] =
-    &[Reproduction { key: "lan2010", title: "Lan, Wang & Chen 2010: compliant constant-force mechanism of Table 3", run: lan2010 }];
+    &[Reproduction { key: "lan2010", title: "Lan, Wang & Chen 2010: compliant constant-force mechanisms of Tables 3 and 4", run: lan2010 }];
 
-const ROWS: &str = include_str!("../../../../reference/lan2010.toml");
-const SHAPES: &str = include_str!("../../../../reference/lan2010-shapes.toml");
-const NODES: &str = include_str!("../../../../examples/compliant/lan-table3.toml");
+const ROWS: &str = include_str!("../../../../../reference/lan2010.toml");
+const SHAPES: &str = include_str!("../../../../../reference/lan2010-shapes.toml");
+const NODES: &str = include_str!("../../../../../examples/compliant/lan-table3.toml");
 
 /// A design from a project text with settings; the texts are embedded and tested, so a failure gives rows that cannot agree.
 fn design_of(text: &str, set: &[&str]) -> Option<Design> {
@@ -73,15 +78,17 @@ struct Lan {
     thick: Solved,
     thick_reissner: Solved,
     prototype: Solved,
+    end_effector: EndEffector,
 }
 
 impl Lan {
     fn solve(progress: Progress<'_>) -> Option<Self> {
         let mut done = 0.0;
         let mut step = || {
-            done += 1.0 / 11.0;
+            done += 1.0 / 12.0;
             progress(done)
         };
+        let end_effector = EndEffector::solve().filter(|_| step())?;
         let mut run = |text: &str, set: &[&str]| solve(text, set).filter(|_| step());
         let inextensible = "model.beam=inextensible";
         let shapes = run(SHAPES, &[])?;
@@ -100,6 +107,7 @@ impl Lan {
             thick: run(SHAPES, &["design.thickness=2 mm", "load.travel=17 mm"])?,
             thick_reissner: run(SHAPES, &["design.thickness=2 mm", "model.beam=reissner", "load.travel=17 mm"])?,
             prototype: run(SHAPES, &["design.thickness=0.85 mm", "load.travel=16 mm"])?,
+            end_effector,
         })
     }
 
@@ -129,6 +137,13 @@ impl Lan {
             "thin_range_start" => mm * thin_start().unwrap_or(f64::NAN),
             "thin_range" => mm * (thin_end - thin_start().unwrap_or(f64::NAN)),
             "thin_stress_drop" => mpa * (stress_at(&self.longer, thin_end) - stress_at(&self.thin, thin_end)),
+            "thin_range_ratio" => 100.0 * (1.0 - thin_start().unwrap_or(f64::NAN) / thin_end),
+            "thin_depth" => 1.0 / (0.85 * 0.85 * 0.85),
+            "thin_same" => 100.0 * (self.thin.force(TRAVEL_M) / self.longer.force(TRAVEL_M) - 1.0),
+            "thin_force" => self.thin.force(thin_end),
+            "box_beam_2" => mm * self.side_m(1, |[x, _]| LEFT_M + LX_M - x),
+            "box_beam_4" => mm * self.side_m(3, |[x, _]| x - LEFT_M),
+            "length_ratio" => self.nodes.get("length_ratio_max"),
             "invariance" => self.invariance(),
             "normalised_force" => normalised(&self.shapes),
             "objective" => self.shapes.force(8.8e-3) / self.shapes.force(4e-3) - 1.0,
@@ -149,8 +164,21 @@ impl Lan {
             "flat_5" => self.stroke(|c| c.longest_flat(0.05)),
             "band_2_5" => self.stroke(|c| c.longest_within(0.975 * PRINTED_N, 1.025 * PRINTED_N)),
             "prototype_force" => self.prototype.force(14.5e-3),
-            _ => self.shape_value(id),
+            _ => match id.split_once('_') {
+                Some(("t4", id)) => self.end_effector.value(id),
+                Some(("v", id)) => beam_forces::value(&self.longer, self.shapes.get("range_start"), TRAVEL_M, id),
+                _ => self.shape_value(id),
+            },
         }
+    }
+
+    /// Least distance of the axis of a beam, by the printed nodes, to a side of the design box, m; negative outside.
+    fn side_m(&self, beam: usize, distance_m: impl Fn([f64; 2]) -> f64) -> f64 {
+        let network = &self.nodes.design.network;
+        let beam = &network.beams[beam];
+        let [x, y] = network.nodes[beam.start].position_m;
+        let points = (0..=1024).map(|i| beam.shape.point_m(f64::from(i) / 1024.0));
+        points.map(|p| distance_m([x + p[0], y + p[1]])).fold(f64::INFINITY, f64::min)
     }
 
     /// `length_1` … `angle_4`: shapes that follow from the printed nodes.
@@ -200,7 +228,8 @@ fn softening(soft: &Solved, stiff: &Solved, displacement_m: f64) -> f64 {
 
 /// The force that the paper prints for the end of the travel.
 const PRINTED_N: f64 = 9.736;
-/// Width of the design box and travel, Table 2 of the paper.
+/// Left side and width of the design box, and travel: Tables 1 and 2 of the paper.
+const LEFT_M: f64 = 2.5e-3;
 const LX_M: f64 = 3.2e-2;
 const TRAVEL_M: f64 = 13.6e-3;
 

@@ -1,0 +1,121 @@
+//! Room: the smallest distance between beams, and of the beams to the sides of the envelope, over the travel.
+
+use forcewright_base::{maths, roots};
+use forcewright_beam::{BeamState, Clearance, Point, Reflection, clearance, clearance_near};
+
+use crate::analysis::Behaviour;
+use crate::design::{Design, Envelope, Mirror};
+
+/// States looked at, besides rest, before the least is refined between its neighbours.
+const STATES: usize = 12;
+/// Places per beam at which its faces are looked at, before the least is refined between its neighbours.
+const PLACES: usize = 40;
+/// Width to which a displacement is refined, as part of the travel.
+const REFINED: f64 = 1e-4;
+
+/// The smallest distance between beams on a path.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest {
+    /// Displacement, m.
+    pub at_m: f64,
+    /// The distance and its places.
+    pub clearance: Clearance,
+}
+
+/// The smallest distance to the sides of the envelope on a path.
+#[derive(Clone, Copy, Debug)]
+pub struct Margin {
+    /// Displacement, m.
+    pub at_m: f64,
+    /// Index of the beam.
+    pub beam: usize,
+    /// Where along it.
+    pub u: f64,
+    /// The distance, m; negative outside.
+    pub margin_m: f64,
+}
+
+/// The smallest distance between the surfaces of beams from rest to the end of the path, mirrored halves included; `None` where no two
+/// of them face each other.
+///
+/// Looks at rest and at 12 states, and refines the displacement between the neighbours of the least.
+pub fn nearest(design: &Design, behaviour: &Behaviour) -> Option<Nearest> {
+    let reflection = design.mirror.map(|mirror| match mirror {
+        Mirror::X(at) => Reflection { point_m: [at, 0.0], direction: [0.0, 1.0] },
+        Mirror::Y(at) => Reflection { point_m: [0.0, at], direction: [1.0, 0.0] },
+    });
+    let network = &design.network;
+    let whole = |point: &Point| {
+        let clearance = clearance(network, Some(point), reflection)?;
+        Some(Nearest { at_m: point.displacement, clearance })
+    };
+    let near = |point: &Point, known: &Nearest| {
+        let clearance = clearance_near(network, Some(point), reflection, &known.clearance)?;
+        Some(Nearest { at_m: point.displacement, clearance })
+    };
+    least(behaviour, whole, near, |n| n.clearance.distance_m)
+}
+
+/// The smallest distance of the beams, with their thickness, to the sides of an envelope from rest to the end of the path.
+///
+/// Only the drawn network is looked at; its mirror image stays in the mirrored envelope. The end of a beam is cut square, so a beam that
+/// ends on a side at a right angle to it touches the side and does not stick out.
+pub fn margin(behaviour: &Behaviour, envelope: &Envelope) -> Option<Margin> {
+    let of = |point: &Point| {
+        let all = point.beams.iter().enumerate().map(|(beam, state)| {
+            let (u, margin_m) = beam_margin(state, envelope);
+            Margin { at_m: point.displacement, beam, u, margin_m }
+        });
+        all.reduce(|best, next| if next.margin_m < best.margin_m { next } else { best })
+    };
+    least(behaviour, of, |point, _| of(point), |m| m.margin_m)
+}
+
+/// Where a beam is nearest to the sides, and how near, m.
+fn beam_margin(state: &BeamState, envelope: &Envelope) -> (f64, f64) {
+    let at = |u: f64| {
+        let ([x, y], (sin, cos)) = (state.shape_m(u), maths::sin_cos(state.angle_rad(u)));
+        let half_m = 0.5 * state.thickness_m(u);
+        let (aside, above) = (half_m * sin.abs(), half_m * cos.abs());
+        let sides =
+            [x - aside - envelope.low_m[0], envelope.high_m[0] - x - aside, y - above - envelope.low_m[1], envelope.high_m[1] - y - above];
+        sides.into_iter().fold(f64::INFINITY, f64::min)
+    };
+    let place = |i: usize| i as f64 / PLACES as f64;
+    let values: Vec<f64> = (0..=PLACES).map(|i| at(place(i))).collect();
+    let best = (0..=PLACES).reduce(|b, i| if values[i] < values[b] { i } else { b }).unwrap_or(0);
+    let found = roots::minimise(at, place(best.saturating_sub(1)), place((best + 1).min(PLACES)), 1e-7);
+    if found.value < values[best] { (found.x, found.value) } else { (place(best), values[best]) }
+}
+
+/// The least of a quantity over the states of a path, refined between two neighbours of the least; `near` follows a known one.
+fn least<T: Copy>(
+    behaviour: &Behaviour,
+    of: impl Fn(&Point) -> Option<T>,
+    near: impl Fn(&Point, &T) -> Option<T>,
+    value: impl Fn(&T) -> f64,
+) -> Option<T> {
+    let points = &behaviour.path.points;
+    let last = points.len().checked_sub(1)?;
+    let states = last.clamp(1, STATES);
+    let stations: Vec<&Point> = (0..=states).map(|i| &points[i * last / states]).collect();
+    let found: Vec<Option<T>> = stations.iter().map(|p| of(p)).collect();
+    let size = |t: &Option<T>| t.as_ref().map_or(f64::INFINITY, &value);
+    let best = (0..found.len()).reduce(|b, i| if size(&found[i]) < size(&found[b]) { i } else { b })?;
+    let answer = found[best]?;
+    let (left, right) = (stations[best.saturating_sub(1)].control, stations[(best + 1).min(states)].control);
+    let at = |x: f64| behaviour.path.at(x).ok().and_then(|p| near(&p, &answer));
+    // Next to an end the least is that end, unless it falls inwards.
+    let inside = if best == 0 || best == states {
+        let inwards = if best == 0 { left + 0.01 * (right - left) } else { right - 0.01 * (right - left) };
+        size(&at(inwards)) < value(&answer)
+    } else {
+        true
+    };
+    if !inside || left >= right {
+        return Some(answer);
+    }
+    let refined = roots::minimise(|x| size(&at(x)), left, right, REFINED * right);
+    let found = [behaviour.path.at(refined.x).ok().and_then(|p| of(&p)), at(refined.x)];
+    Some(found.into_iter().flatten().fold(answer, |best, next| if value(&next) < value(&best) { next } else { best }))
+}

@@ -1,0 +1,121 @@
+//! Clearance and envelope: closed forms, and the travel against a dense scan.
+
+mod common;
+#[path = "common/drawing.rs"]
+mod drawing;
+
+use common::{NODES, check, close, outcome, solve, understand};
+use drawing::Drawing;
+use forcewright_beam::{Reflection, clearance};
+use forcewright_compliant::Compliant;
+use forcewright_contract::family::Mechanism;
+use forcewright_model::{CheckState, FigureContent, Item, Role};
+
+#[test]
+fn the_least_over_the_travel_is_found() {
+    let line = Reflection { point_m: [0.0, 0.0], direction: [0.0, 1.0] };
+    for set in [&[][..], &["load.travel=20 mm"], &["design.nodes.n4.at=[\"14 mm\", \"27 mm\"]", "load.travel=17 mm"]] {
+        let solved = solve(NODES, set);
+        let end = solved.design.travel_m;
+        let scan = (0..=200).map(|i| {
+            let point = solved.behaviour.path.at(end * f64::from(i) / 200.0).unwrap();
+            clearance(&solved.design.network, Some(&point), Some(line)).unwrap().distance_m
+        });
+        let least = scan.fold(f64::INFINITY, f64::min);
+        let found = solved.get("clearance_min");
+        // Between two states of the scan it may be a little less.
+        assert!(found <= least + 1e-9 && found > least - 2e-5, "{set:?}: {found}, by scanning {least}");
+    }
+}
+
+/// Two beams one above the other, 10 mm apart, clamped at the left; the tip of the upper one is pushed down.
+fn stacked(travel: &str) -> String {
+    let mut drawing = Drawing::straight("", [0.0, -1.0], travel, "reissner");
+    drawing.nodes[1].1 = [80.0, 0.0];
+    drawing.nodes.push(("n3", [0.0, -10.0], "support = \"clamped\"".to_owned()));
+    drawing.nodes.push(("n4", [100.0, -10.0], String::new()));
+    drawing.beams.push(("b2", ["n3", "n4"], Vec::new()));
+    drawing.text()
+}
+
+#[test]
+fn a_tip_comes_nearer_to_the_next_beam() {
+    // The tip goes straight down by the travel; the thickness of both is 1 mm.
+    for (travel, wanted) in [("5 mm", 4e-3), ("9.5 mm", -0.5e-3), ("20 mm", -1e-3)] {
+        let solved = solve(&stacked(travel), &[]);
+        close(solved.get("clearance_min"), wanted, 1e-8, travel);
+        let nearest = solved.measured.nearest.unwrap();
+        assert_eq!((nearest.clearance.first.beam, nearest.clearance.second.beam), (0, 1));
+    }
+    let limit = |set: &str| check(&outcome(&stacked("5 mm"), &[set]), "COMP006").state;
+    assert_eq!(limit("requirements.limits.clearance_min.min=3.9 mm"), CheckState::Met);
+    assert_eq!(limit("requirements.limits.clearance_min.min=4.1 mm"), CheckState::Missed);
+}
+
+#[test]
+fn a_beam_alone_has_no_clearance() {
+    let text = Drawing::straight("", [0.0, -1.0], "5 mm", "reissner").text();
+    let result = outcome(&text, &["requirements.limits.clearance_min.min=1 mm"]);
+    let open = check(&result, "COMP006");
+    assert!(open.state == CheckState::NotAssessed && open.advice.as_ref().unwrap().contains("face each other"), "{open:?}");
+}
+
+/// A cantilever of 100 mm along x with an envelope.
+fn boxed(envelope: &str, travel: &str) -> String {
+    Drawing::straight("", [0.0, -1.0], travel, "reissner")
+        .text()
+        .replace("[material]", &format!("[requirements.envelope]\n{envelope}\n[material]"))
+}
+
+#[test]
+fn distance_to_each_side() {
+    let margin = |envelope: &str, travel: &str| solve(&boxed(envelope, travel), &[]).get("envelope_margin");
+    close(margin("y = [\"-20 mm\", \"3 mm\"]", "1 mm"), 2.5e-3, 1e-12, "above, at rest, less half the thickness");
+    close(margin("x = [\"-7 mm\", \"200 mm\"]", "1 mm"), 7e-3, 1e-12, "behind the clamp, where the end is square");
+    close(margin("x = [\"0 mm\", \"200 mm\"]\ny = [\"-30 mm\", \"30 mm\"]", "1 mm"), 0.0, 1e-12, "clamped to the wall");
+    // The upper corner of the tip turns outwards a little before the tip comes back.
+    close(margin("x = [\"-7 mm\", \"99 mm\"]", "1 mm"), -1.0023e-3, 1e-7, "too long");
+    // The lower corner of the tip when pushed down.
+    let solved = solve(&boxed("y = [\"-12 mm\", \"9 mm\"]", "10 mm"), &[]);
+    let tip = &solved.behaviour.path.points.last().unwrap().beams[0];
+    let corner = tip.shape_m(1.0)[1] - 0.5e-3 * forcewright_base::maths::cos(tip.angle_rad(1.0));
+    close(solved.get("envelope_margin"), corner + 12e-3, 1e-10, "below, pushed");
+    close(tip.shape_m(1.0)[1], -10e-3, 1e-9, "the tip");
+}
+
+#[test]
+fn the_check_and_the_picture() {
+    let met = outcome(&boxed("y = [\"-12 mm\", \"9 mm\"]", "10 mm"), &[]);
+    let check_met = check(&met, "COMP007");
+    assert!(check_met.state == CheckState::Met && check_met.title.contains("beam b1"), "{check_met:?}");
+    close(check_met.margin.unwrap(), check_met.value.unwrap() / 21e-3, 1e-12, "relative to the height");
+    let missed = outcome(&boxed("y = [\"-10 mm\", \"9 mm\"]", "10 mm"), &[]);
+    assert_eq!(check(&missed, "COMP007").state, CheckState::Missed);
+    assert!(!outcome(NODES, &[]).checks.iter().any(|c| c.code == "COMP007"), "nobody asked");
+    let text = boxed("x = [\"-1 mm\", \"200 mm\"]\ny = [\"-12 mm\", \"9 mm\"]", "10 mm");
+    let design = common::design(&text, &[]);
+    let figures = Compliant::analyse(&design, &mut |_| true).figures;
+    let drawn = figures.iter().any(|f| match &f.content {
+        FigureContent::Scene(scene) => scene
+            .items
+            .iter()
+            .any(|i| matches!(i, Item::Line { points, role: Role::Construction, .. } if points.len() == 5 && (points[2][0] - 0.2).abs() + (points[2][1] - 9e-3).abs() < 1e-12)),
+        FigureContent::Plot(_) => false,
+    });
+    assert!(drawn, "the envelope is in the picture");
+}
+
+#[test]
+fn what_is_wrong_with_an_envelope() {
+    for (envelope, code) in [
+        ("", "E0302"),
+        ("x = [\"3 mm\", \"2 mm\"]", "E0204"),
+        ("x = [\"3 mm\", \"3 mm\"]", "E0204"),
+        ("x = [\"3 mm\"]", "E0311"),
+        ("z = [\"3 mm\", \"4 mm\"]", "E0301"),
+        ("x = [\"3 N\", \"4 N\"]", "E0201"),
+    ] {
+        let (design, diagnostics) = understand(&boxed(envelope, "1 mm"), &[]);
+        assert!(design.is_none() && diagnostics.in_file_order().iter().any(|d| d.code == code), "{envelope}: {diagnostics:?}");
+    }
+}
