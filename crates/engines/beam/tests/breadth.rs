@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::shooting::Shooting;
 use common::{POM, SplitMix, TABLE3_NODES, add, cantilever, close, elastica, exact, near, node, random_network, solve, table3_by_shapes};
 use forcewright_base::maths;
 use forcewright_beam::{
@@ -117,6 +118,34 @@ fn kinked_tapers_are_beams_in_a_row() {
         })
         .sum();
     near(a.points[500].energy_j, work, 2e-9, "work");
+}
+
+/// Linear tapers and a parallel guide against shooting, which integrates the beams.
+#[test]
+fn tapers_agree_with_shooting() {
+    let mut random = SplitMix(21);
+    let mut seen = 0;
+    for round in 0..24 {
+        let Ok(mut network) = random_network(&mut random, 2.0, 1.0) else { continue };
+        for beam in &mut network.beams {
+            let [a, b] = [1e-3 + random.around(4e-4), 1e-3 + random.around(4e-4)];
+            beam.profile = vec![[0.0, a], [1.0, b]];
+        }
+        if round % 2 == 0 {
+            network.nodes[4].support = Support::Parallel;
+        }
+        let theory = if round % 3 == 0 { Theory::Inextensible } else { Theory::Reissner };
+        let path = trace(&network, &[0.004, 0.009], &exact(theory), &mut |_| true).expect("a sound network");
+        for point in &path.points {
+            let Some(shot) = Shooting::new(&network, theory, point).solve(point) else { continue };
+            near(point.force, shot.force, 1e-8, "force");
+            for (state, moment) in point.beams.iter().zip(&shot.start_moment_nm) {
+                close(state.start_moment_nm, *moment, 1e-7 * point.force.abs() * 0.04, "moment");
+            }
+            seen += 1;
+        }
+    }
+    assert!(seen >= 30, "{seen}");
 }
 
 /// A rigid arm of length a on a cantilever of length L: δ = F (L³/3 + L² a + L a²)/EI.

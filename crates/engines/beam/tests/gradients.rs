@@ -224,7 +224,7 @@ fn mixed(drive: Drive) -> Network {
     };
     let mut beams = vec![beam(0, 1, &[2.6, -0.7]), beam(2, 1, &[-2.4]), beam(1, 3, &[-2.2, 0.5, 0.3])];
     beams[1].end_joint = Joint::Hinged;
-    Network { nodes: places.iter().zip(supports).map(|(p, s)| node(*p, s)).collect(), beams, drive, before: Vec::new() }
+    common::network(places.iter().zip(supports).map(|(p, s)| node(*p, s)).collect(), beams, drive)
 }
 
 #[test]

@@ -275,17 +275,16 @@ fn table4_chain() {
     let n1 = add(n2, shapes[0].chord_m(), -1.0);
     near(n1[0], 1.004_613_342_296e-2, 1e-12, "n1 x");
     let beams = shapes.into_iter().enumerate().map(|(i, s)| common::rigid(i, i + 1, s, section)).collect();
-    let network = Network {
-        nodes: vec![
+    let network = common::network(
+        vec![
             common::node(n1, Support::Clamped),
             common::node(n2, Support::Free),
             common::node(n3, Support::Free),
             common::node(n4, common::VERTICAL_GUIDE),
         ],
         beams,
-        drive: Drive::Displacement { node: 3, direction: [0.0, -1.0] },
-        before: Vec::new(),
-    };
+        Drive::Displacement { node: 3, direction: [0.0, -1.0] },
+    );
     let path = solve(&network, &metres(TABLE4.iter().map(|r| r.0)), &elastica());
     for (point, (_, force, stress)) in path.points.iter().zip(&TABLE4) {
         near(8.0 * point.force, *force, 1e-11, "force");

@@ -205,12 +205,7 @@ fn moved(network: &Network, angle: f64, mirror: bool, shift: [f64; 2], reverse: 
         beams.swap(1, 3);
     }
     let Drive::Displacement { node, direction } = network.drive else { panic!("another drive") };
-    Network {
-        nodes,
-        beams,
-        drive: Drive::Displacement { node: place(node), direction: turned(direction, angle, mirror) },
-        before: Vec::new(),
-    }
+    common::network(nodes, beams, Drive::Displacement { node: place(node), direction: turned(direction, angle, mirror) })
 }
 
 #[test]
@@ -324,12 +319,11 @@ fn truss() -> Network {
         let shape = Shape::from_chord([-places[start][0], h], &[]).expect("a bar");
         Beam { start_joint: Joint::Rigid, end_joint: Joint::Hinged, ..rigid(start, 2, shape, POM) }
     };
-    Network {
-        nodes: vec![node(places[0], Support::Pinned), node(places[1], Support::Pinned), node(places[2], Support::Free)],
-        beams: vec![beam(0), beam(1)],
-        drive: Drive::Displacement { node: 2, direction: [0.0, -1.0] },
-        before: Vec::new(),
-    }
+    common::network(
+        vec![node(places[0], Support::Pinned), node(places[1], Support::Pinned), node(places[2], Support::Free)],
+        vec![beam(0), beam(1)],
+        Drive::Displacement { node: 2, direction: [0.0, -1.0] },
+    )
 }
 
 #[test]
@@ -438,12 +432,11 @@ fn closed_polygon_of_rigid_joints_is_solved() {
         let (a, b) = (corners[i], corners[(i + 1) % 4]);
         rigid(i, (i + 1) % 4, Shape::from_chord([b[0] - a[0], b[1] - a[1]], &[]).unwrap(), POM)
     };
-    let network = Network {
-        nodes: corners.iter().enumerate().map(|(i, p)| node(*p, if i == 0 { Support::Clamped } else { Support::Free })).collect(),
-        beams: (0..4).map(side).collect(),
-        drive: Drive::Displacement { node: 2, direction: UP },
-        before: Vec::new(),
-    };
+    let network = common::network(
+        corners.iter().enumerate().map(|(i, p)| node(*p, if i == 0 { Support::Clamped } else { Support::Free })).collect(),
+        (0..4).map(side).collect(),
+        Drive::Displacement { node: 2, direction: UP },
+    );
     let path = solve(&network, &[0.0, 0.01], &elastica());
     // Each side is guided at both ends (corners keep their angle) and bent by P/(2√2) across it: P/δ = 2·12 EI/L³.
     let length = s * 2.0_f64.sqrt();

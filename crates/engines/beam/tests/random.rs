@@ -2,9 +2,8 @@
 
 mod common;
 
-use common::{POM, SplitMix, near, random_network};
-use forcewright_base::{dense::Lu, maths};
-use forcewright_beam::{Network, Path, Settings, Shape, Status, Theory, trace};
+use common::{SplitMix, near, random_network, shooting::Shooting};
+use forcewright_beam::{Path, Settings, Status, Theory, trace};
 
 fn finite(path: &Path) -> bool {
     path.points.iter().all(|p| {
@@ -75,91 +74,6 @@ fn short_steps_find_the_same_branch() {
     assert!(mild == 12 && wild >= 6, "{mild} {wild}");
 }
 
-/// State of a beam in cm and N: angle, moment, x, y.
-type State = [f64; 4];
-
-/// Shooting along one beam: M' = L (H sin θ − V cos θ), EI (θ' − η') = M L, by the classical Runge–Kutta method and Richardson's
-/// extrapolation. Forces in N, lengths in cm.
-fn shoot(shape: &Shape, stiffness: f64, force: [f64; 2], start: State) -> State {
-    let length = shape.length_m() * 100.0;
-    let slope = |u: f64, y: State| {
-        let (sin, cos) = maths::sin_cos(y[0]);
-        let bend = shape.slope_at(u) + y[1] * length / stiffness;
-        [bend, length * (force[0] * sin - force[1] * cos), length * cos, length * sin]
-    };
-    let after = |y: State, k: State, h: f64| [0, 1, 2, 3].map(|i| y[i] + h * k[i]);
-    let integrate = |steps: u32| {
-        let h = 1.0 / f64::from(steps);
-        (0..steps).fold(start, |y, i| {
-            let u = f64::from(i) * h;
-            let a = slope(u, y);
-            let b = slope(u + 0.5 * h, after(y, a, 0.5 * h));
-            let c = slope(u + 0.5 * h, after(y, b, 0.5 * h));
-            let d = slope(u + h, after(y, c, h));
-            [0, 1, 2, 3].map(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]))
-        })
-    };
-    let (coarse, fine) = (integrate(200), integrate(400));
-    [0, 1, 2, 3].map(|i| fine[i] + (fine[i] - coarse[i]) / 15.0)
-}
-
-/// What does not fit when beams 1 and 2 leave their clamps with unknown (H, V, M): joint `n_3`, then the guide at `n_5`.
-fn misfit(network: &Network, displacement_cm: f64, unknowns: &[f64; 6]) -> [f64; 6] {
-    let stiffness = POM.bending_stiffness_n_m2() * 1e4;
-    let shape = |i: usize| &network.beams[i].shape;
-    let place = |i: usize| network.nodes[i].position_m.map(|x| x * 100.0);
-    let from_clamp = |i: usize, force: [f64; 2], moment: f64| {
-        let [x, y] = place(i);
-        shoot(shape(i), stiffness, force, [shape(i).angle_at(0.0), moment, x, y])
-    };
-    let [h1, v1, m1, h2, v2, m2] = *unknowns;
-    let one = from_clamp(0, [h1, v1], m1);
-    let two = from_clamp(1, [h2, v2], m2);
-    let rotation = one[0] - shape(0).angle_at(1.0);
-    let force = [h1 + h2, v1 + v2];
-    let three = shoot(shape(2), stiffness, force, [shape(2).angle_at(0.0) + rotation, one[1] + two[1], one[2], one[3]]);
-    let turn = three[0] - shape(2).angle_at(1.0);
-    let four = shoot(shape(3), stiffness, force, [shape(3).angle_at(0.0) + turn, three[1], three[2], three[3]]);
-    let end = place(4);
-    [
-        two[0] - shape(1).angle_at(1.0) - rotation,
-        one[2] - two[2],
-        one[3] - two[3],
-        four[0] - shape(3).angle_at(1.0),
-        four[2] - end[0],
-        four[3] - end[1] + displacement_cm,
-    ]
-}
-
-/// Newton's method with central differences.
-fn solve_by_shooting(network: &Network, displacement_cm: f64, mut x: [f64; 6]) -> [f64; 6] {
-    let mut lu = Lu::new();
-    for _ in 0..8 {
-        let mut r = misfit(network, displacement_cm, &x);
-        let mut jacobian = [0.0; 36];
-        for column in 0..6 {
-            let moved = |sign: f64| {
-                let mut y = x;
-                y[column] += sign * 1e-4;
-                misfit(network, displacement_cm, &y)
-            };
-            let (above, below) = (moved(1.0), moved(-1.0));
-            for row in 0..6 {
-                jacobian[row * 6 + column] = (above[row] - below[row]) / 2e-4;
-            }
-        }
-        lu.factor(6, 6, &jacobian).expect("regular");
-        lu.solve(&mut r);
-        for (x, r) in x.iter_mut().zip(r) {
-            *x -= r;
-        }
-        if r.iter().all(|r| r.abs() < 1e-12) {
-            return x;
-        }
-    }
-    x
-}
-
 #[test]
 fn forces_agree_with_shooting() {
     let mut random = SplitMix(44);
@@ -169,16 +83,13 @@ fn forces_agree_with_shooting() {
         let network = random_network(&mut random, 3.0, 1.5).expect("mild shapes");
         let path = trace(&network, &[0.004, 0.0136], &settings, &mut |_| true).unwrap();
         for point in &path.points {
-            let [one, two] = [&point.beams[0], &point.beams[1]];
-            // A guess that is wrong by a thousandth: shooting must find its own way back.
-            let guess =
-                [one.force_n[0], one.force_n[1], 100.0 * one.start_moment_nm, two.force_n[0], two.force_n[1], 100.0 * two.start_moment_nm]
-                    .map(|v| 1.001 * v);
-            let x = solve_by_shooting(&network, 100.0 * point.control, guess);
-            let size = (x[0] * x[0] + x[1] * x[1]).sqrt() + (x[3] * x[3] + x[4] * x[4]).sqrt();
-            assert!((point.force + x[1] + x[4]).abs() < 1e-8 * size.max(point.force.abs()), "{} {}", point.force, x[1] + x[4]);
-            near(one.force_n[0], x[0], 1e-7, "H of beam 1");
-            near(100.0 * two.start_moment_nm, x[5], 1e-6, "moment at n2");
+            let shot = Shooting::new(&network, settings.theory, point).solve(point).expect("shooting finds it as well");
+            near(point.force, shot.force, 1e-9, "force");
+            for (beam, (force, moment)) in point.beams.iter().zip(shot.beam_force_n.iter().zip(&shot.start_moment_nm)) {
+                let size = force[0].abs() + force[1].abs();
+                assert!((beam.force_n[0] - force[0]).abs() + (beam.force_n[1] - force[1]).abs() < 1e-8 * size);
+                assert!((beam.start_moment_nm - moment).abs() < 1e-8 * size * 0.04);
+            }
             compared += 1;
         }
     }

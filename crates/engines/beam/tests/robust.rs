@@ -97,17 +97,16 @@ fn parts_that_move_freely_are_named() {
         b
     };
     let up = std::f64::consts::FRAC_PI_2;
-    let linkage = Network {
-        nodes: vec![
+    let linkage = common::network(
+        vec![
             node([0.0, 0.0], Support::Clamped),
             node([0.0, 0.1], Support::Free),
             node([0.1, 0.1], Support::Free),
             node([0.1, 0.0], Support::Clamped),
         ],
-        beams: vec![bar(0, 1, up), bar(1, 2, 0.0), bar(3, 2, up)],
-        drive: Drive::Force { node: 1, direction: UP },
-        before: Vec::new(),
-    };
+        vec![bar(0, 1, up), bar(1, 2, 0.0), bar(3, 2, up)],
+        Drive::Force { node: 1, direction: UP },
+    );
     for theory in [Theory::Inextensible, Theory::Reissner] {
         let path = trace(&linkage, &[0.01], &exact(theory), &mut |_| true).unwrap();
         assert!(matches!(path.status, Status::Mechanism { node: 1 | 2 }), "{}", path.status);
@@ -133,15 +132,11 @@ fn straight_inextensible_beams() {
 fn pulled_beyond_its_length_an_inextensible_beam_has_no_equilibrium() {
     let shape = Shape::from_chord([0.08, 0.0], &[3.0]).unwrap();
     let length = shape.length_m();
-    let network = Network {
-        nodes: vec![
-            node([0.0, 0.0], Support::Pinned),
-            node([0.08, 0.0], Support::Slider { direction: [1.0, 0.0], rotation: Rotation::Free }),
-        ],
-        beams: vec![rigid(0, 1, shape, POM)],
-        drive: Drive::Displacement { node: 1, direction: [1.0, 0.0] },
-        before: Vec::new(),
-    };
+    let network = common::network(
+        vec![node([0.0, 0.0], Support::Pinned), node([0.08, 0.0], Support::Slider { direction: [1.0, 0.0], rotation: Rotation::Free })],
+        vec![rigid(0, 1, shape, POM)],
+        Drive::Displacement { node: 1, direction: [1.0, 0.0] },
+    );
     let path = trace(&network, &[0.5], &Settings { theory: Theory::Inextensible, ..Settings::default() }, &mut |_| true).unwrap();
     assert!(!path.status.is_complete(), "{}", path.status);
     assert!(path.reach() < length - 0.08 && path.reach() > 0.9 * (length - 0.08), "{} of {}: {}", path.reach(), length - 0.08, path.status);
@@ -160,12 +155,11 @@ fn hostile_shapes_end_in_bounded_time() {
             }
         };
         for theory in [Theory::Inextensible, Theory::Reissner] {
-            let network = Network {
-                nodes: vec![node([0.0, 0.0], Support::Clamped), node([0.02, 0.01], VERTICAL_GUIDE)],
-                beams: vec![rigid(0, 1, shape.clone(), POM)],
-                drive: Drive::Displacement { node: 1, direction: UP },
-                before: Vec::new(),
-            };
+            let network = common::network(
+                vec![node([0.0, 0.0], Support::Clamped), node([0.02, 0.01], VERTICAL_GUIDE)],
+                vec![rigid(0, 1, shape.clone(), POM)],
+                Drive::Displacement { node: 1, direction: UP },
+            );
             let settings = Settings { theory, iteration_limit: 2_000, ..Settings::default() };
             let path = trace(&network, &[0.001, 0.01], &settings, &mut |_| true).unwrap();
             assert!(path.points.iter().all(|p| p.force.is_finite()));

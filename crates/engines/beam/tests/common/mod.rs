@@ -2,6 +2,10 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 #![allow(clippy::approx_constant, reason = "the paper prints 1.5707")]
 
+pub(crate) mod generator;
+pub(crate) mod shooting;
+
+use forcewright_base::{maths, quadrature::GaussLegendre};
 use forcewright_beam::{Beam, Drive, Joint, Network, Node, Path, Rotation, Section, Settings, Shape, ShapeError, Support, Theory, trace};
 
 /// Material and section of Table 2: `E = 2 GPa`, w = 1 mm, t = 10 mm. Poisson's ratio of polyoxymethylene is not in the paper.
@@ -30,8 +34,34 @@ pub(crate) fn solve(network: &Network, stations: &[f64], settings: &Settings) ->
     path
 }
 
+// The only places where these are written out.
+
+pub(crate) fn joined(start: usize, end: usize, shape: Shape, section: Section, [start_joint, end_joint]: [Joint; 2]) -> Beam {
+    Beam { start_joint, end_joint, ..Beam::new(start, end, shape, section) }
+}
+
+pub(crate) fn network(nodes: Vec<Node>, beams: Vec<Beam>, drive: Drive) -> Network {
+    Network::new(nodes, beams, drive)
+}
+
+pub(crate) fn elastic(young_pa: f64, thickness_m: f64, depth_m: f64, poisson: Option<f64>) -> Section {
+    Section { young_pa, thickness_m, depth_m, poisson }
+}
+
 pub(crate) fn rigid(start: usize, end: usize, shape: Shape, section: Section) -> Beam {
-    Beam { start, end, shape, section, start_joint: Joint::Rigid, end_joint: Joint::Rigid, arms_m: [[0.0; 2]; 2], profile: Vec::new() }
+    joined(start, end, shape, section, [Joint::Rigid, Joint::Rigid])
+}
+
+pub(crate) fn unit(v: [f64; 2]) -> [f64; 2] {
+    let length = maths::hypot(v[0], v[1]);
+    [v[0] / length, v[1] / length]
+}
+
+/// ∫ f over [a, b], accurate to rounding for smooth integrands.
+pub(crate) fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let rule = GaussLegendre::new(20);
+    let width = (b - a) / 60.0;
+    (0..60).map(|i| width * rule.integrate(|u| f(a + (f64::from(i) + u) * width))).sum()
 }
 
 pub(crate) fn node(position_m: [f64; 2], support: Support) -> Node {
@@ -43,18 +73,12 @@ pub(crate) const VERTICAL_GUIDE: Support = Support::Slider { direction: [0.0, 1.
 /// The half mechanism of Fig. 3 with given beams: `n_1` and `n_2` clamped, `n_5` on a vertical guide and pushed down.
 pub(crate) fn half_mechanism(nodes_m: [[f64; 2]; 5], shapes: [Shape; 4], section: Section) -> Network {
     let [a, b, c, d] = shapes;
-    Network {
-        nodes: vec![
-            node(nodes_m[0], Support::Clamped),
-            node(nodes_m[1], Support::Clamped),
-            node(nodes_m[2], Support::Free),
-            node(nodes_m[3], Support::Free),
-            node(nodes_m[4], VERTICAL_GUIDE),
-        ],
-        beams: vec![rigid(0, 2, a, section), rigid(1, 2, b, section), rigid(2, 3, c, section), rigid(3, 4, d, section)],
-        drive: Drive::Displacement { node: 4, direction: [0.0, -1.0] },
-        before: Vec::new(),
-    }
+    let supports = [Support::Clamped, Support::Clamped, Support::Free, Support::Free, VERTICAL_GUIDE];
+    network(
+        nodes_m.iter().zip(supports).map(|(p, s)| node(*p, s)).collect(),
+        vec![rigid(0, 2, a, section), rigid(1, 2, b, section), rigid(2, 3, c, section), rigid(3, 4, d, section)],
+        Drive::Displacement { node: 4, direction: [0.0, -1.0] },
+    )
 }
 
 /// Table 3 with the printed shapes and lengths; the nodes follow from `n_1`.
@@ -85,12 +109,8 @@ pub(crate) fn add(a: [f64; 2], b: [f64; 2], factor: f64) -> [f64; 2] {
 /// A straight beam from a clamp at the origin along a direction, with its other end as given.
 pub(crate) fn cantilever(length_m: f64, angle_rad: f64, section: Section, support: Support, drive: Drive) -> Network {
     let shape = Shape::new(vec![angle_rad], length_m).expect("a shape");
-    Network {
-        nodes: vec![node([0.0, 0.0], Support::Clamped), node(shape.chord_m(), support)],
-        beams: vec![rigid(0, 1, shape, section)],
-        drive,
-        before: Vec::new(),
-    }
+    let nodes = vec![node([0.0, 0.0], Support::Clamped), node(shape.chord_m(), support)];
+    network(nodes, vec![rigid(0, 1, shape, section)], drive)
 }
 
 #[track_caller]
