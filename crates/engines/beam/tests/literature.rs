@@ -47,7 +47,8 @@ fn stationary_by_shooting(network: &Network, path: &Path, fold: &Fold, theory: T
     let prescribed = Network { drive: Drive::Displacement { node, direction }, ..network.clone() };
     let scale = path.folds.iter().fold(0.0_f64, |m, f| m.max(f.displacement));
     let force = |offset: f64| {
-        let point = Point { control: fold.displacement + offset, ..path.whole[fold.index].clone() };
+        let mut point = path.whole[fold.index].clone();
+        point.control = fold.displacement + offset;
         shot(&prescribed, theory, &point).force
     };
     let (h, here) = (1e-4 * scale, force(0.0));
