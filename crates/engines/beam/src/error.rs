@@ -205,6 +205,13 @@ pub enum Status {
         /// The largest control reached.
         control: f64,
     },
+    /// An inextensible beam is pulled straight: its ends cannot move any further apart, and the force grows without limit.
+    PulledStraight {
+        /// The largest control reached.
+        control: f64,
+        /// The beam.
+        beam: usize,
+    },
     /// The steps became too small without signs of a limit point.
     StepTooSmall {
         /// The largest control reached.
@@ -259,6 +266,11 @@ impl fmt::Display for Status {
                 f,
                 "there is no neighbouring equilibrium beyond {control:.6e}: the path turns back (snap-through); \
                  stop before it, or drive the displacement instead of the force"
+            ),
+            Self::PulledStraight { control, beam } => write!(
+                f,
+                "beam {beam} is pulled straight at {control:.6e}: an inextensible beam gives way no further; \
+                 stop before it, or allow stretching (the Reissner theory)"
             ),
             Self::StepTooSmall { control } => write!(
                 f,

@@ -12,7 +12,7 @@ use crate::{
     path::{Approach, DEGREES, same_end},
     stability::{Bifurcation, Fold, Jump},
     state::Point,
-    stepping::{Interrupted, Knot, LARGEST_TURN, SMALLEST_STEP, Stepper, next_step},
+    stepping::{CLOSEST_LOOK, Interrupted, Knot, LARGEST_TURN, SMALLEST_STEP, Stepper, next_step},
 };
 
 /// Sum of the largest change of each step after which a path is given up: 60 rad, or ten lengths of the longest beam.
@@ -41,6 +41,7 @@ pub(crate) struct Followed {
     pub(crate) bifurcations: Vec<Bifurcation>,
 }
 
+/// Whether stepping along the control ended where the path may go on.
 fn is_stuck(status: &Status) -> bool {
     matches!(status, Status::NoEquilibriumBeyond { .. } | Status::StepTooSmall { .. })
 }
@@ -107,24 +108,35 @@ fn resolved_course(
     let mut course = Stepper::new(model, &resolution, budget, counters, progress).walk(&mut border, start, goal);
     let mut estimate = f64::INFINITY;
     let cut_short = |status: &Status| matches!(status, Status::Stopped { .. } | Status::IterationLimit { .. });
-    for &degree in DEGREES.iter().filter(|d| **d > start.resolution.degree) {
-        if !is_stuck(&start.status) || cut_short(&course.status) || estimate <= settings.accuracy {
-            break;
-        }
-        let Approach { resolution: finer, failed, .. } = Approach::new(model, degree, budget, counters, &mut |_| true);
+    let turned_at = course.turned_at;
+    let mut walk_again = |degree: usize, border: &mut Border, counters: &mut Counters| {
+        let Approach { resolution, failed, .. } = Approach::new(model, degree, budget, counters, &mut |_| true);
         if let Some(status) = failed {
-            course.status = status;
+            return Err(status);
+        }
+        let run = Stepper::new(model, &resolution, budget, counters, &mut |_| true).run(&[turned_at]);
+        let again = Start { model, resolution: &resolution, knots: &run.knots, status: run.status };
+        let next = Stepper::new(model, &resolution, budget, counters, progress).walk(border, &again, goal);
+        if cut_short(&next.status) { Err(next.status) } else { Ok((next, resolution)) }
+    };
+    let more = is_stuck(&start.status) && !cut_short(&course.status);
+    for &degree in DEGREES.iter().filter(|d| more && **d > start.resolution.degree) {
+        match walk_again(degree, &mut border, counters) {
+            Ok((next, finer)) => {
+                estimate = difference(&course, &next);
+                (course, resolution) = (next, finer);
+            }
+            Err(status) => course.status = status,
+        }
+        if cut_short(&course.status) || estimate <= settings.accuracy {
             break;
         }
-        let run = Stepper::new(model, &finer, budget, counters, &mut |_| true).run(&[course.turned_at]);
-        let again = Start { model, resolution: &finer, knots: &run.knots, status: run.status };
-        let next = Stepper::new(model, &finer, budget, counters, progress).walk(&mut border, &again, goal);
-        if cut_short(&next.status) {
-            course.status = next.status;
-            break;
+    }
+    if more && estimate.is_infinite() && start.resolution.degree == DEGREES[DEGREES.len() - 1] {
+        // There is no finer one: compared with the one before instead.
+        if let Ok((before, _)) = walk_again(DEGREES[DEGREES.len() - 2], &mut border, counters) {
+            estimate = difference(&before, &course);
         }
-        estimate = difference(&course, &next);
-        (course, resolution) = (next, finer);
     }
     if is_stuck(&start.status) && course.status == Status::Complete && estimate > settings.accuracy {
         course.status = Status::NotResolved { error_estimate: estimate, accuracy: settings.accuracy };
@@ -202,6 +214,10 @@ impl Stepper<'_> {
             let last = &course.knots[course.knots.len() - 1];
             let control = last.control * unit;
             step = step.min(LARGEST_TURN / self.size(&last.rate).max(1e-3));
+            if let Some(beam) = self.pulled_straight(&last.state) {
+                course.status = Status::PulledStraight { control, beam };
+                return course;
+            }
             match self.go_on(border, &mut course, step, goal) {
                 Ok(None) => return course,
                 Ok(Some(distance)) => {
@@ -237,6 +253,10 @@ impl Stepper<'_> {
         let (next, distance) = self.step_along(border, &course.knots, step)?;
         let here = &course.knots[course.knots.len() - 1];
         if next.control_rate == 0.0 {
+            return Err(Interrupted::Rejected);
+        }
+        let straight_on = here.control_rate * next.control_rate > 0.0;
+        if straight_on && next.instability[0] != here.instability[1] && step * self.size(&here.rate) > CLOSEST_LOOK * LARGEST_TURN {
             return Err(Interrupted::Rejected);
         }
         let mut marks = Vec::new();

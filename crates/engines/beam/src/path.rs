@@ -57,7 +57,7 @@ pub struct Path {
     /// A device that is driven slowly passes through the points before the first of [`Path::jumps`], then through those from its
     /// landing to the next one, and so on.
     pub whole: Vec<Point>,
-    /// How [`Path::whole`] ended.
+    /// How [`Path::whole`] ended. Only where it is complete, the points beyond the first limit point are as accurate as asked.
     pub whole_status: Status,
     /// Limit points of the control in path order; the control falls after the first, rises after the second, and so on.
     pub folds: Vec<Fold>,
@@ -273,6 +273,7 @@ pub(crate) fn same_end(a: &Status, b: &Status) -> bool {
     match (a, b) {
         (Status::Complete, Status::Complete) => true,
         (Status::NoEquilibriumBeyond { control: a }, Status::NoEquilibriumBeyond { control: b })
+        | (Status::PulledStraight { control: a, .. }, Status::PulledStraight { control: b, .. })
         | (Status::StepTooSmall { control: a }, Status::StepTooSmall { control: b }) => (a - b).abs() <= 1e-4 * a.abs().max(b.abs()),
         _ => false,
     }

@@ -1,11 +1,13 @@
 //! One path at one resolution: predictor, corrector and step control.
 
+use forcewright_base::maths;
+
 use crate::{
     assembly::{Resolution, System},
     counters::Counters,
     element::recover,
     error::Status,
-    model::Model,
+    model::{BeamModel, Model},
     state::{BeamState, NodeState, PieceState, Point, Sampling, Solved},
 };
 
@@ -25,6 +27,12 @@ pub(crate) const ROUNDING: f64 = 1e-7;
 pub(crate) const MOST_ITERATIONS: u32 = 10;
 /// Steps are not cut below this fraction of the first one, or of the way behind if that is shorter.
 pub(crate) const SMALLEST_STEP: f64 = 1e-8;
+/// A force of that many EI/L² along an inextensible beam has pulled it straight: the bends that are left are at its ends, within 1 % of
+/// its length.
+const STRAIGHT: f64 = 1e4;
+/// A step in which the number of unstable motions changes without a limit point is repeated with a shorter one, down to this part of the
+/// longest step that the tangent allows: what looks like the crossing of a branch may be a bend of the path next to one.
+pub(crate) const CLOSEST_LOOK: f64 = 1.0 / 128.0;
 /// The state moves this many times faster than ever before: the signature of a limit point at the smallest step.
 const RUNAWAY: f64 = 100.0;
 
@@ -269,6 +277,10 @@ impl<'a> Stepper<'a> {
         if !self.is_smooth(&knots[knots.len() - 1], target) {
             return Err(Interrupted::Rejected);
         }
+        let here = &knots[knots.len() - 1];
+        if self.instability() != here.instability && target - here.control > CLOSEST_LOOK * self.step_limit(here) {
+            return Err(Interrupted::Rejected);
+        }
         self.counters.steps += 1;
         self.keep(knots, target);
         if (self.progress)((target / goal).clamp(0.0, 1.0)) { Ok(distance) } else { Err(Interrupted::Stopped) }
@@ -368,7 +380,21 @@ impl<'a> Stepper<'a> {
     fn why_stuck(&self, knots: &[Knot], control: f64) -> Status {
         let slowest = knots.iter().map(|k| self.size(&k.tangent)).fold(f64::INFINITY, f64::min);
         let now = knots.last().map_or(0.0, |k| self.size(&k.tangent));
+        if let Some(beam) = knots.last().and_then(|k| self.pulled_straight(&k.state)) {
+            return Status::PulledStraight { control, beam };
+        }
         if now > RUNAWAY * slowest { Status::NoEquilibriumBeyond { control } } else { Status::StepTooSmall { control } }
+    }
+
+    /// An inextensible beam that has nothing left to give.
+    pub(crate) fn pulled_straight(&self, state: &[f64]) -> Option<usize> {
+        let model = self.system.model;
+        let straight = |b: &BeamModel| {
+            let along = maths::hypot(state[b.force], state[b.force + 1]);
+            b.constants.axial <= 0.0 && along * b.constants.length > STRAIGHT * b.constants.bending
+        };
+        let piece = model.beams.iter().position(straight)?;
+        model.spans.iter().position(|(pieces, _)| pieces.contains(&piece))
     }
 
     /// The equilibrium at a control next to a guess, or nothing.

@@ -351,6 +351,8 @@ impl<'p> Gradients<'p> {
             let sum = &mut parts.design.pieces[self.model.spans[beam].0.start + piece];
             sum.thickness -= half;
             sum.add_thickness(&Place::new(&inner.info, v), -half);
+            let taper = inner.info.thickness_m.map_or(0.0, |[a, b]| b - a);
+            sum.add_sliding(&inner.info.range, u, -0.5 * taper / unit);
         }
     }
 
