@@ -87,6 +87,8 @@ pub struct PeakStress {
 
 /// Accuracy of the place of the largest stress; its value is wrong by the square of this.
 const PEAK_TOLERANCE: f64 = 2e-6;
+/// How far from an end of a beam, as part of the way to the next sample, tells whether the stress rises.
+const INWARDS: f64 = 0.01;
 
 /// The line of a beam at rest.
 #[derive(Debug)]
@@ -443,11 +445,19 @@ impl PieceState {
                 if values[i] > best.0 {
                     best = (values[i], sampling.u[i]);
                 }
-                // The ends themselves are samples; an extremum next to one shows as a sample above its neighbours.
-                if i == 0 || i + 1 == count || values[i] < values[i - 1] || values[i] < values[i + 1] {
+                let (before, after) = (i.saturating_sub(1), (i + 1).min(count - 1));
+                if values[i] < values[before] || values[i] < values[after] {
                     continue;
                 }
-                let refined = roots::minimise(|u| -self.stress_pa(u)[face].abs(), sampling.u[i - 1], sampling.u[i + 1], PEAK_TOLERANCE);
+                let stress = |u: f64| self.stress_pa(u)[face].abs();
+                if before == i || after == i {
+                    // An end: the extremum is next to it only if the stress rises inwards.
+                    let inwards = sampling.u[i] + INWARDS * (sampling.u[before] + sampling.u[after] - 2.0 * sampling.u[i]);
+                    if stress(inwards) <= values[i] {
+                        continue;
+                    }
+                }
+                let refined = roots::minimise(|u| -stress(u), sampling.u[before], sampling.u[after], PEAK_TOLERANCE);
                 if -refined.value > best.0 {
                     best = (-refined.value, refined.x);
                 }

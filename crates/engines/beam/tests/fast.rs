@@ -90,7 +90,7 @@ fn random_designs_agree_with_the_general_path() {
             stress_ratios[ratios.len() - 1]
         );
         // What is asked for rests on estimates: it may be exceeded now and then, not by much, and not often.
-        assert!(all >= 140 && over <= 3 && worst < 2.0, "{accuracy:e}: {over} of {all}, worst {worst}");
+        assert!(all >= 140 && over <= 1 && worst < 1.2, "{accuracy:e}: {over} of {all}, worst {worst}");
         assert!(worst_stress < 20.0, "{accuracy:e}: stress wrong by {worst_stress} times the accuracy");
         assert!(stiff < 30.0 * accuracy, "{accuracy:e}: stiffness wrong by {stiff:e}");
         assert!(general <= 3, "{accuracy:e}: {general} of {all} by the general path");

@@ -247,8 +247,17 @@ fn share(tally: &Tally, name: &str) -> usize {
 
 /// Only these reasons occur, and most networks have a path.
 fn assert_ends(tally: &Tally, cases: usize) {
-    let known =
-        ["Complete", "NoEquilibriumBeyond", "PulledStraight", "NotResolved", "OverConstrained", "Mechanism", "StepTooSmall", "IterationLimit", "TooLong"];
+    let known = [
+        "Complete",
+        "NoEquilibriumBeyond",
+        "PulledStraight",
+        "NotResolved",
+        "OverConstrained",
+        "Mechanism",
+        "StepTooSmall",
+        "IterationLimit",
+        "TooLong",
+    ];
     for end in tally.ends.keys() {
         let name = end.rsplit(' ').next().unwrap_or_default();
         assert!(end == "of these pulled straight" || known.contains(&name) || name == "DriveBlocked", "{end}");

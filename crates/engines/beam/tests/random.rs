@@ -95,3 +95,31 @@ fn forces_agree_with_shooting() {
     }
     assert!(compared >= 36, "{compared}");
 }
+
+/// Inside, at the ends, and next to the ends, where a maximum hides between the last two places looked at.
+#[test]
+fn no_place_has_more_stress_than_the_largest() {
+    let mut random = SplitMix(4711);
+    let stations: Vec<f64> = (1..=34).map(|i| 17e-3 * f64::from(i) / 34.0).collect();
+    let mut next_to_an_end = 0;
+    for index in 0..170 {
+        let network = random_network(&mut random, 3.0, 1.5).expect("mild shapes");
+        let theory = if index % 2 == 0 { Theory::Inextensible } else { Theory::Reissner };
+        // Seen to be wrong once, and a sample of the others.
+        if !(index == 110 || index == 163 || index % 10 == 0) {
+            continue;
+        }
+        let path = trace(&network, &stations, &Settings { theory, accuracy: 1e-6, ..Settings::default() }, &mut |_| true).unwrap();
+        for beam in path.points.iter().skip(20).flat_map(|p| &p.beams) {
+            let peak = beam.peak_stress();
+            next_to_an_end += usize::from((peak.u > 0.0 && peak.u < 0.01) || (peak.u < 1.0 && peak.u > 0.99));
+            for i in 0..=400 {
+                // Crowded at the ends.
+                let u = 0.5 - 0.5 * forcewright_base::maths::cos(std::f64::consts::PI * f64::from(i) / 400.0);
+                let [left, right] = beam.stress_pa(u).map(f64::abs);
+                assert!(left.max(right) <= peak.stress_pa * (1.0 + 1e-9), "{index} at {u}: {left} {right} {peak:?}");
+            }
+        }
+    }
+    assert!(next_to_an_end > 0);
+}
