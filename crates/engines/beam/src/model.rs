@@ -322,8 +322,9 @@ impl<'a> Builder<'a> {
     }
 
     fn piece_info(&self, beam: &Beam, range: [f64; 2], line: &BeamLine) -> PieceInfo {
-        let start = beam.shape.point_m(range[0]);
-        let start_m = if range[0] == 0.0 { line.start_m } else { [0, 1].map(|i| line.start_m[i] + start[i]) };
+        // Not by an integral of length 0: networks are set up by the thousand.
+        let start = if range[0] > 0.0 { beam.shape.point_m(range[0]) } else { [0.0; 2] };
+        let start_m = [0, 1].map(|i| line.start_m[i] + start[i]);
         let varies = !beam.profile.is_empty();
         PieceInfo {
             shape: beam.shape.part(range),
