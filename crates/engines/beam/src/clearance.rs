@@ -8,7 +8,7 @@
 use forcewright_base::maths;
 
 use crate::{
-    network::Network,
+    network::{Beam, Network, unit},
     state::{BeamState, Point},
 };
 
@@ -79,10 +79,14 @@ pub struct Clearance {
 }
 
 /// The smallest distance between the surfaces of beams at rest, or in an equilibrium of the network; with a reflection, also to the
-/// mirror image. `None` if no two places are nearest to each other, as in a single straight beam.
+/// mirror image. `None` if no two places are nearest to each other, as in a single straight beam, or if the network has not passed
+/// [`Network::check`]. The state must be one of this network.
 ///
 /// The search begins at the nearest of 33 places per axis and ends at rounding; the thickness is that at the two places.
 pub fn clearance(network: &Network, state: Option<&Point>, reflection: Option<Reflection>) -> Option<Clearance> {
+    if !is_sound(network, state, reflection) {
+        return None;
+    }
     let strands: Vec<Strand<'_>> = (0..network.beams.len()).map(|beam| Strand::new(network, state, beam)).collect();
     let joints = Joints::of(network, reflection.as_ref());
     let search = Search { strands: &strands, joints: &joints, reflection, size_m: joints.size_m };
@@ -103,6 +107,9 @@ pub fn clearance(network: &Network, state: Option<&Point>, reflection: Option<Re
 /// The same pair of places in another state, or of the beams between them what has become of it; `None` where no two places of those
 /// beams are nearest to each other any more. Cheaper than [`clearance`], but another pair may have become nearer.
 pub fn clearance_near(network: &Network, state: Option<&Point>, reflection: Option<Reflection>, known: &Clearance) -> Option<Clearance> {
+    if !is_sound(network, state, reflection) {
+        return None;
+    }
     let strands: Vec<Strand<'_>> = (0..network.beams.len()).map(|beam| Strand::bare(network, state, beam)).collect();
     let joints = Joints::of(network, reflection.as_ref());
     let search = Search { strands: &strands, joints: &joints, reflection, size_m: joints.size_m };
@@ -111,6 +118,14 @@ pub fn clearance_near(network: &Network, state: Option<&Point>, reflection: Opti
         return None;
     }
     search.settle(pair, [known.first.u, known.second.u])
+}
+
+/// Whether nodes exist, the state has all beams, and a mirror line has a direction.
+fn is_sound(network: &Network, state: Option<&Point>, reflection: Option<Reflection>) -> bool {
+    let nodes = network.nodes.len();
+    network.beams.iter().all(|b| b.start < nodes && b.end < nodes)
+        && state.is_none_or(|s| s.beams.len() == network.beams.len())
+        && reflection.is_none_or(|r| unit(r.direction).is_some())
 }
 
 /// Half the thickness of a beam at a place, m.
@@ -219,28 +234,31 @@ impl<'a> Strand<'a> {
 
 /// Which ends are at the same place.
 struct Joints {
-    /// By the index of the node: the first node at its place.
-    node: Vec<usize>,
-    /// Whether it lies on the mirror line.
+    /// Per beam and end: the number of its place.
+    place: Vec<[usize; 2]>,
+    /// Per place: whether it lies on the mirror line.
     on_line: Vec<bool>,
     size_m: f64,
 }
 
 impl Joints {
     fn of(network: &Network, reflection: Option<&Reflection>) -> Self {
-        let nodes = &network.nodes;
         let lengths = network.beams.iter().map(|b| b.shape.length_m());
         let size_m = lengths.fold(0.0, f64::max);
-        // Two clamps at the same place are one place of the ground.
-        let first = |at: [f64; 2]| nodes.iter().position(|n| distance(n.position_m, at) <= TOUCH * size_m);
-        Self {
-            node: nodes.iter().enumerate().map(|(i, n)| first(n.position_m).unwrap_or(i)).collect(),
-            on_line: nodes
-                .iter()
-                .map(|n| reflection.is_some_and(|r| distance(r.image(n.position_m), n.position_m) <= TOUCH * size_m))
-                .collect(),
-            size_m,
-        }
+        // Ends on the arms of a rigid body are where the arms end; two clamps at the same place are one place of the ground.
+        let mut known: Vec<[f64; 2]> = Vec::new();
+        let mut number = |at: [f64; 2]| {
+            let found = known.iter().position(|p| distance(*p, at) <= TOUCH * size_m);
+            found.unwrap_or_else(|| {
+                known.push(at);
+                known.len() - 1
+            })
+        };
+        let ends = |b: &Beam| [(b.start, b.arms_m[0]), (b.end, b.arms_m[1])];
+        let end = |(node, arm): (usize, [f64; 2])| [0, 1].map(|i| network.nodes[node].position_m[i] + arm[i]);
+        let place = network.beams.iter().map(|b| ends(b).map(|e| number(end(e)))).collect();
+        let on_line = known.iter().map(|p| reflection.is_some_and(|r| distance(r.image(*p), *p) <= TOUCH * size_m)).collect();
+        Self { place, on_line, size_m }
     }
 }
 
@@ -364,10 +382,10 @@ impl Search<'_> {
             return None;
         }
         let (p, q) = (one.at(u), self.image(pair, other.at(v)));
-        let (node, other_node) = (self.node_at(pair.first, u), self.node_at(pair.second, v));
+        let (node, other_node) = (self.joint_at(pair.first, u), self.joint_at(pair.second, v));
         let axes_m = distance(p, q);
         if let (Some(a), Some(b)) = (node, other_node)
-            && self.joints.node[a] == self.joints.node[b]
+            && a == b
             && (!pair.mirrored || self.joints.on_line[a])
         {
             return None;
@@ -397,26 +415,24 @@ impl Search<'_> {
         })
     }
 
-    /// The node at a place, if it is an end.
-    fn node_at(&self, beam: usize, u: f64) -> Option<usize> {
-        let beam = &self.strands[beam].network.beams[beam];
+    /// The number of the joint at a place, if it is an end.
+    fn joint_at(&self, beam: usize, u: f64) -> Option<usize> {
+        let [start, end] = self.joints.place[beam];
         if u <= 0.0 {
-            Some(beam.start)
+            Some(start)
         } else if u >= 1.0 {
-            Some(beam.end)
+            Some(end)
         } else {
             None
         }
     }
 
-    /// Unit vectors along all beams that leave a node, with their images if it lies on the mirror line.
-    fn leaving(&self, node: usize, mirrored: bool) -> impl Iterator<Item = [f64; 2]> {
-        let same = move |other: usize| self.joints.node[other] == self.joints.node[node];
-        let on_line = mirrored && self.joints.on_line[node];
+    /// Unit vectors along all beams that leave a joint, with their images if it lies on the mirror line.
+    fn leaving(&self, joint: usize, mirrored: bool) -> impl Iterator<Item = [f64; 2]> {
+        let on_line = mirrored && self.joints.on_line[joint];
         self.strands.iter().flat_map(move |strand| {
-            let beam = &strand.network.beams[strand.beam];
-            let ends = [beam.start, beam.end].into_iter().enumerate().filter(move |(_, n)| same(*n));
-            ends.flat_map(move |(end, _)| {
+            let ends = (0..2).filter(move |end| self.joints.place[strand.beam][*end] == joint);
+            ends.flat_map(move |end| {
                 let along = strand.away(end);
                 let image = on_line.then(|| self.turned(Pair { first: 0, second: 0, mirrored: true }, along));
                 [Some(along), image].into_iter().flatten()

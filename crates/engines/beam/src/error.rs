@@ -75,6 +75,11 @@ pub enum NetworkError {
         /// The beam.
         beam: usize,
     },
+    /// More pieces between kinks of the thickness than [`crate::Network::MOST_PIECES`].
+    TooManyPieces {
+        /// How many there are.
+        count: usize,
+    },
     /// An arm is not finite.
     Arm {
         /// The beam.
@@ -148,6 +153,11 @@ impl fmt::Display for NetworkError {
             Self::Profile { beam } => {
                 write!(f, "beam {beam}: places of the thickness must ascend from 0 to 1, at most {} of them", crate::Network::MOST_PLACES)
             }
+            Self::TooManyPieces { count } => write!(
+                f,
+                "thicknesses are given at so many places that beams fall into {count} pieces; at most {} are supported",
+                crate::Network::MOST_PIECES
+            ),
             Self::Arm { beam } => write!(f, "an arm of beam {beam} is not a finite number"),
             Self::AllRigid { beam, rigid_m } => write!(
                 f,

@@ -12,7 +12,7 @@ use crate::{
     path::{Approach, DEGREES, same_end},
     stability::{Bifurcation, Fold, Jump},
     state::Point,
-    stepping::{CLOSEST_LOOK, Interrupted, Knot, LARGEST_TURN, SMALLEST_STEP, Stepper, next_step},
+    stepping::{CLOSEST_LOOK, Interrupted, Knot, LARGEST_TURN, SMALLEST_STEP, Stepper, larger, next_step},
 };
 
 /// Sum of the largest change of each step after which a path is given up: 60 rad, or ten lengths of the longest beam.
@@ -25,8 +25,8 @@ const TAKEN_BACK: f64 = 0.05;
 pub(crate) struct Course {
     knots: Vec<ArcKnot>,
     status: Status,
-    /// Control, displacement and force, SI, at each limit point and at the end: what two resolutions are compared by.
-    marks: Vec<[f64; 3]>,
+    /// Control, displacement, force and largest stress, SI, at each limit point and at the end: what two resolutions are compared by.
+    marks: Vec<[f64; 4]>,
     /// Control at which the arc length took over, SI.
     turned_at: f64,
 }
@@ -39,6 +39,8 @@ pub(crate) struct Followed {
     pub(crate) folds: Vec<Fold>,
     pub(crate) jumps: Vec<Jump>,
     pub(crate) bifurcations: Vec<Bifurcation>,
+    /// That of the points.
+    pub(crate) resolution: Option<Arc<Resolution>>,
 }
 
 /// Whether stepping along the control ended where the path may go on.
@@ -56,12 +58,12 @@ pub(crate) struct Start<'a> {
 }
 
 /// Bifurcations only, for a path that is not followed any further.
-pub(crate) fn bifurcations(start: &Start, settings: &Settings, counters: &mut Counters) -> Vec<Bifurcation> {
+pub(crate) fn bifurcations(start: &Start, budget: u64, counters: &mut Counters) -> Vec<Bifurcation> {
     if start.knots.windows(2).all(|k| k[0].instability == k[1].instability) {
         return Vec::new();
     }
     let mut go_on = |_: f64| true;
-    let mut stepper = Stepper::new(start.model, start.resolution, settings.iteration_limit, counters, &mut go_on);
+    let mut stepper = Stepper::new(start.model, start.resolution, budget, counters, &mut go_on);
     let mut knots = stepper.along_arc(start.knots);
     if is_stuck(&start.status) {
         stepper.take_back(&mut knots);
@@ -87,9 +89,9 @@ pub(crate) fn follow(
     }
     let jumps = stepper.land(&mut border, &mut course.knots);
     let bifurcations = stepper.bifurcations(&mut border, &course.knots);
-    let mut followed = Followed { bifurcations, status: course.status, ..Followed::default() };
+    let mut followed = Followed { bifurcations, status: course.status, resolution: Some(Arc::clone(&resolution)), ..Followed::default() };
     let places = stepper.points_along(&mut border, &course.knots, stations, &mut followed.whole);
-    followed.name_folds_and_jumps(model.kinematic, &course.knots, &places, &jumps);
+    followed.name_folds_and_jumps(model, &course.knots, &places, &jumps);
     followed
 }
 
@@ -151,17 +153,17 @@ fn difference(coarse: &Course, fine: &Course) -> f64 {
         return f64::INFINITY;
     }
     let mut worst = 0.0_f64;
-    for kind in 0..3 {
+    for kind in 0..4 {
         let largest = fine.marks.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v[kind].abs()));
         for (a, b) in coarse.marks.iter().zip(&fine.marks) {
-            worst = worst.max((a[kind] - b[kind]).abs() / largest);
+            worst = larger(worst, (a[kind] - b[kind]).abs() / largest);
         }
     }
     worst
 }
 
 impl Followed {
-    fn name_folds_and_jumps(&mut self, kinematic: bool, knots: &[ArcKnot], places: &[usize], jumps: &[(usize, usize)]) {
+    fn name_folds_and_jumps(&mut self, model: &Model, knots: &[ArcKnot], places: &[usize], jumps: &[(usize, usize)]) {
         for (knot, &index) in knots.iter().zip(places) {
             if knot.fold
                 && let Some(p) = self.whole.get(index)
@@ -172,7 +174,9 @@ impl Followed {
         for &(from, to) in jumps {
             let (from, to) = (places[from], places[to]);
             let (Some(a), Some(b)) = (self.whole.get(from), self.whole.get(to)) else { continue };
-            let work = if kinematic { 0.0 } else { a.control * (b.displacement - a.displacement) };
+            let by_drive = if model.kinematic { 0.0 } else { a.control * (b.displacement - a.displacement) };
+            let dead: f64 = model.dead.iter().map(|(place, force)| force * (b.state[*place] - a.state[*place])).sum();
+            let work = by_drive + dead * model.force_n * model.length_m;
             self.jumps.push(Jump {
                 from,
                 to,
@@ -281,11 +285,10 @@ impl Stepper<'_> {
         }
         for mark in &marks {
             // Solved again for its reaction.
-            if self.settle(border, mark).is_none() {
-                return Err(Interrupted::Rejected);
-            }
+            let Some(point) = self.settle(border, mark) else { return Err(Interrupted::Rejected) };
             let [displacement, force] = self.displacement_and_force(mark);
-            course.marks.push([mark.control * self.system.model.control_unit(), displacement, force]);
+            let stress_pa = point.peak_stress().map_or(0.0, |(_, peak)| peak.stress_pa);
+            course.marks.push([mark.control * self.system.model.control_unit(), displacement, force, stress_pa]);
         }
         course.knots.extend(stretch.into_iter().skip(1));
         Ok(if crossing.is_some() { None } else { Some(distance) })

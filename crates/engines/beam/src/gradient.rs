@@ -232,11 +232,6 @@ pub enum GradientError {
         /// The place asked for.
         u: f64,
     },
-    /// An output asks for the position of a place that is inside a rigid part of a beam.
-    RigidPart {
-        /// The place asked for.
-        u: f64,
-    },
     /// The point does not belong to this path.
     ForeignPoint,
     /// A limit point: the state has no derivative by the control, nor by the design.
@@ -257,7 +252,6 @@ impl fmt::Display for GradientError {
             Self::NoBeam { beam } => write!(f, "there is no beam {beam} to differentiate"),
             Self::NoNode { node } => write!(f, "there is no node {node} to differentiate"),
             Self::NotOnBeam { u } => write!(f, "u = {u} is not on a beam; it must be in [0, 1]"),
-            Self::RigidPart { u } => write!(f, "u = {u} is in a rigid part of the beam; ask for the place where it ends"),
             Self::ForeignPoint => write!(f, "the point is not an equilibrium of this path; take it from the path"),
             Self::LimitPoint { control } => {
                 write!(f, "at {control:.6e} the path turns back and has no gradient; differentiate at another control")

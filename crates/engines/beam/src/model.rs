@@ -79,6 +79,8 @@ pub(crate) struct Model {
     pub(crate) end: f64,
     /// The node that the drive acts on.
     pub(crate) driven_node: usize,
+    /// The number of this load.
+    pub(crate) stage: usize,
     /// Whether every beam is one piece without arms and there is one load.
     pub(crate) plain: bool,
     /// Whether the drive turns.
@@ -97,8 +99,8 @@ impl Model {
         let ends = network.before.iter().map(|s| s.to.abs()).chain([0.0]);
         let mut before: Option<Self> = None;
         let mut dead: Vec<(usize, f64)> = Vec::new();
-        for ((load, drive), end) in loads.into_iter().zip(network.drives()).zip(ends) {
-            let mut model = Self { end, dead: dead.clone(), driven_node: drive.node(), ..base.clone() };
+        for (stage, ((load, drive), end)) in loads.into_iter().zip(network.drives()).zip(ends).enumerate() {
+            let mut model = Self { stage, end, dead: dead.clone(), driven_node: drive.node(), ..base.clone() };
             model.kinematic = drive.is_kinematic();
             model.turning = matches!(drive, Drive::Rotation { .. } | Drive::Moment { .. });
             (model.solved, model.projection, model.pull) = (load.solved, load.projection, load.pull);
@@ -230,6 +232,7 @@ impl<'a> Builder<'a> {
             before: None,
             end: 0.0,
             driven_node: 0,
+            stage: 0,
             plain: network.before.is_empty(),
             turning: false,
         };

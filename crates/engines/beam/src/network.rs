@@ -253,6 +253,8 @@ impl Network {
     pub const MOST_STAGES: usize = 16;
     /// Largest number of places at which the thickness of a beam is given.
     pub const MOST_PLACES: usize = 32;
+    /// Largest number of pieces that beams are cut into where their thickness has a kink, all beams together.
+    pub const MOST_PIECES: usize = 128;
     /// Largest distance between the end of a shape and its node, relative to the length of the beam.
     pub const LARGEST_GAP: f64 = 1e-6;
 
@@ -300,6 +302,10 @@ impl Network {
             if !self.beams.iter().any(|b| b.start == node || b.end == node) {
                 return Err(NetworkError::LooseNode { node });
             }
+        }
+        let count = self.beams.iter().map(|b| b.profile.len().max(2) - 1).sum();
+        if count > Self::MOST_PIECES {
+            return Err(NetworkError::TooManyPieces { count });
         }
         self.check_drives()?;
         self.check_rigid_motion()
@@ -387,8 +393,27 @@ impl Network {
             if self.drives().take(stage).any(clash) {
                 return Err(NetworkError::DrivenTwice { node: drive.node(), stage });
             }
+            if self.is_held_before(drive, stage) {
+                return Err(NetworkError::DriveBlocked { node: drive.node() });
+            }
         }
         Ok(())
+    }
+
+    /// Whether a force or moment acts only on motions that earlier loads hold.
+    fn is_held_before(&self, drive: &Drive, stage: usize) -> bool {
+        let earlier = || self.drives().take(stage).filter(|d| d.node() == drive.node());
+        match *drive {
+            Drive::Moment { .. } => earlier().any(|d| matches!(d, Drive::Rotation { .. })),
+            Drive::Force { node, direction } => {
+                let held: Vec<[f64; 2]> =
+                    earlier().filter_map(|d| if let Drive::Displacement { direction, .. } = d { unit(*direction) } else { None }).collect();
+                let one_way = matches!(self.nodes[node].support, Support::Slider { .. });
+                let along = |h: &[f64; 2]| unit(direction).is_some_and(|d| (h[0] * d[1] - h[1] * d[0]).abs() < 1e-12);
+                held.len() > 1 || (one_way && !held.is_empty()) || held.iter().any(along)
+            }
+            _ => false,
+        }
     }
 
     fn check_drive(&self, drive: &Drive) -> Result<(), NetworkError> {

@@ -13,7 +13,7 @@ use crate::{
     overlap::Zones,
     stability::{Bifurcation, Fold, Jump},
     state::Point,
-    stepping::{Knot, Run, Stepper, interpolate},
+    stepping::{Knot, Run, Stepper, interpolate, larger},
 };
 
 /// Polynomial degrees of the rotation of a beam that are tried in turn.
@@ -68,6 +68,8 @@ pub struct Path {
     model: Arc<Model>,
     zones: Arc<Zones>,
     resolution: Arc<Resolution>,
+    /// That of [`Path::whole`].
+    whole_resolution: Arc<Resolution>,
     knots: Arc<Vec<Knot>>,
 }
 
@@ -140,7 +142,7 @@ pub fn trace(
         let mut part = |fraction: f64| progress(natural * (done + share * fraction));
         let visited = if level == 0 { &sample } else { stations };
         let approach = Approach::new(&model, degrees[level], settings.iteration_limit, &mut counters, &mut part);
-        let Approach { resolution, before, failed } = approach;
+        let Approach { resolution, before, bifurcations, failed } = approach;
         let run = match failed {
             Some(status) => Run { points: Vec::new(), knots: Vec::new(), status },
             None => Stepper::new(&model, &resolution, settings.iteration_limit, &mut counters, &mut part).run(visited),
@@ -158,7 +160,7 @@ pub fn trace(
         level += 1;
         if hopeless || resolved || level == degrees.len() {
             let mut path = finish(model, (run, resolution), coarser, error_estimate, accuracy);
-            (path.before, path.zones) = (before, Arc::new(zones));
+            (path.before, path.zones, path.bifurcations) = (before, Arc::new(zones), bifurcations);
             let mut rest = |fraction: f64| progress(0.5 + 0.5 * fraction);
             path.finish_whole(stations, settings, &mut counters, &mut rest);
             path.counters = counters;
@@ -174,6 +176,8 @@ pub(crate) struct Approach {
     pub(crate) resolution: Arc<Resolution>,
     /// The ends of the loads that were reached.
     pub(crate) before: Vec<Point>,
+    /// Where stability changed on the way.
+    pub(crate) bifurcations: Vec<Bifurcation>,
     /// Why not all of them were.
     pub(crate) failed: Option<Status>,
 }
@@ -188,18 +192,20 @@ impl Approach {
             earlier = load.before.as_deref();
         }
         let mut resolution = Arc::new(Resolution::new(model, degree));
-        let mut before = Vec::with_capacity(loads.len());
+        let (mut before, mut changes) = (Vec::with_capacity(loads.len()), Vec::new());
         for load in loads.into_iter().rev() {
             let mut unseen = |_: f64| progress(0.0);
             let run = Stepper::new(load, &resolution, budget, counters, &mut unseen).run(&[load.end]);
+            let start = Start { model: load, resolution: &resolution, knots: &run.knots, status: run.status };
+            changes.extend(bifurcations(&start, budget, counters));
             let (Some(knot), Some(point)) = (run.knots.last(), run.points.into_iter().next_back()) else {
-                return Self { resolution, before, failed: Some(run.status) };
+                return Self { resolution, before, bifurcations: changes, failed: Some(run.status) };
             };
             let next = resolution.starting_at(knot.state.clone());
             before.push(point);
             resolution = Arc::new(next);
         }
-        Self { resolution, before, failed: None }
+        Self { resolution, before, bifurcations: changes, failed: None }
     }
 }
 
@@ -263,6 +269,7 @@ fn finish(
         bifurcations: Vec::new(),
         zones: Arc::new(Zones::default()),
         model,
+        whole_resolution: Arc::clone(&resolution),
         resolution,
         knots: Arc::new(run.knots),
     }
@@ -310,15 +317,18 @@ fn difference(model: &Model, coarse: &[Point], fine: &[Point]) -> f64 {
     larger(force / largest_force, stress / largest_stress)
 }
 
-/// Maximum that keeps NaN.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
-}
-
 impl Path {
-    /// The equations of the path.
-    pub(crate) fn equations(&self) -> (&Model, &Resolution) {
-        (&self.model, &self.resolution)
+    /// The equations of the path, and the resolution of its points and of [`Path::whole`].
+    pub(crate) fn equations(&self) -> (&Model, [&Resolution; 2]) {
+        (&self.model, [&self.resolution, &self.whole_resolution])
+    }
+
+    /// The resolution that a point was found with, if it is one of this path.
+    pub(crate) fn resolution_of(&self, point: &Point) -> Option<&Resolution> {
+        let own = point.stage == self.model.stage
+            && point.beams.len() == self.model.spans.len()
+            && point.beams.iter().zip(&self.model.spans).all(|(b, (_, line))| b.lies_on(line));
+        [&self.resolution, &self.whole_resolution].into_iter().find(|r| own && r.initial.len() == point.state.len()).map(Arc::as_ref)
     }
 
     /// The rigid zones of the beams.
@@ -335,14 +345,19 @@ impl Path {
     fn finish_whole(&mut self, stations: &[f64], settings: &Settings, counters: &mut Counters, progress: &mut dyn FnMut(f64) -> bool) {
         let start = Start { model: &self.model, resolution: &self.resolution, knots: &self.knots, status: self.status };
         let followed = match settings.follow {
-            Follow::StopAtLimit => Followed { bifurcations: bifurcations(&start, settings, counters), ..Followed::default() },
+            Follow::StopAtLimit => {
+                Followed { bifurcations: bifurcations(&start, settings.iteration_limit, counters), ..Followed::default() }
+            }
             Follow::ToEnd => follow(&start, stations, settings, counters, progress),
         };
         if settings.follow == Follow::ToEnd {
             self.whole_status = followed.status;
         }
         (self.whole, self.folds, self.jumps) = (followed.whole, followed.folds, followed.jumps);
-        self.bifurcations = followed.bifurcations;
+        self.bifurcations.extend(followed.bifurcations);
+        if let Some(resolution) = followed.resolution {
+            self.whole_resolution = resolution;
+        }
     }
 
     /// Stiffness of the driven node against small motions (x, y, rotation) at a point of this path, the other nodes as their supports
@@ -351,10 +366,7 @@ impl Path {
     ///
     /// `None` where the rest of the network is itself at a limit, or if the point is not of this path. Costs one Newton iteration.
     pub fn output_stiffness(&self, point: &Point) -> Option<[[f64; 3]; 3]> {
-        if point.state.len() != self.resolution.initial.len() {
-            return None;
-        }
-        let mut system = System::new(&self.model, &self.resolution);
+        let mut system = System::new(&self.model, self.resolution_of(point)?);
         system.evaluate(&point.state, point.control / self.model.control_unit()).ok()?;
         output::stiffness(&system, self.model.driven_node)
     }

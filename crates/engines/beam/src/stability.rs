@@ -49,6 +49,8 @@ pub struct Jump {
 /// and a real device, never quite symmetric, will leave this one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bifurcation {
+    /// Under which load: that of [`crate::Network::before`] with this number, or the drive, whose number is the next.
+    pub stage: usize,
     /// Value of the control, found to about 1e-6 of a step: m, rad, N or N·m after the drive.
     pub control: f64,
     /// Displacement of the driven node along the drive, m, or its rotation, rad.
@@ -123,6 +125,6 @@ impl Stepper<'_> {
         }
         let (control, [displacement, force]) = last?;
         let control = control * self.system.model.control_unit();
-        Some((high, after, Bifurcation { control, displacement, force, before: from.1, after }))
+        Some((high, after, Bifurcation { stage: self.system.model.stage, control, displacement, force, before: from.1, after }))
     }
 }

@@ -17,8 +17,8 @@ pub struct Point {
     pub control: f64,
     /// Displacement of the driven node along the drive, m, or its rotation, rad.
     pub displacement: f64,
-    /// Force on the driven node along the drive, N, or moment, N·m: the derivative of the energy by the displacement, so positive
-    /// where the network pushes back.
+    /// Force of the drive on its node along itself, N, or moment, N·m, so positive where the network pushes back: the derivative by the
+    /// displacement of the energy less the work of the dead loads of earlier stages, which are not part of it.
     pub force: f64,
     /// Its derivative by the displacement, N/m or N·m/rad, from the tangent of the equations (no differences); relative accuracy
     /// about 1e-8. Very large at a limit point of the displacement.
@@ -39,6 +39,8 @@ pub struct Point {
     pub beams: Vec<BeamState>,
     /// All unknowns and bubbles.
     pub(crate) state: Vec<f64>,
+    /// The number of the load that it was found under.
+    pub(crate) stage: usize,
 }
 
 impl Point {
@@ -222,6 +224,11 @@ impl BeamState {
         }
     }
 
+    /// Whether this is the beam of that line, and not one of another path.
+    pub(crate) fn lies_on(&self, line: &Arc<BeamLine>) -> bool {
+        Arc::ptr_eq(&self.line, line)
+    }
+
     pub(crate) fn pieces(&self) -> &[PieceState] {
         &self.pieces
     }
@@ -252,7 +259,7 @@ impl BeamState {
 
     /// Deformed angle θ(u) = η(u) + φ(u), rad.
     pub fn angle_rad(&self, u: f64) -> f64 {
-        self.line.shape.angle_at(u) + self.rotation_rad(u)
+        self.line.shape.angle_at(u.clamp(0.0, 1.0)) + self.rotation_rad(u)
     }
 
     /// Bending moment M(u) = EI/L dφ/du, N·m; positive where it adds curvature to the left. In a rigid part that where it ends.

@@ -447,6 +447,7 @@ impl<'a> Stepper<'a> {
             beams: beams.collect(),
             nodes: self.node_states(x, control / model.control_unit()),
             state: x.to_vec(),
+            stage: model.stage,
         }
     }
 

@@ -7,7 +7,8 @@ use common::shooting::Shooting;
 use common::{POM, SplitMix, TABLE3_NODES, add, cantilever, close, elastica, exact, near, node, random_network, solve, table3_by_shapes};
 use forcewright_base::maths;
 use forcewright_beam::{
-    Beam, Drive, Follow, Joint, Joints, Network, Node, Rotation, Section, Settings, Shape, Stage, Support, Theory, trace,
+    Beam, Drive, Follow, GradientError, Joint, Joints, Network, NetworkError, Node, Output, Parameter, Path, Rotation, Section, Settings,
+    Shape, Stage, Support, Theory, trace,
 };
 
 const DOWN: [f64; 2] = [0.0, -1.0];
@@ -532,4 +533,100 @@ fn progress_never_goes_back() {
         let status = if stopped.status.is_complete() { stopped.whole_status } else { stopped.status };
         assert!(!status.is_complete(), "after {last} of {}", seen.len());
     }
+}
+
+/// Bars that do not buckle before the truss snaps.
+const STOUT: Section = Section { thickness_m: 8e-3, ..POM };
+
+fn truss(before: Vec<Stage>) -> Network {
+    let nodes = vec![
+        node([-0.05, 0.0], Support::Pinned),
+        node([0.0, 0.01], Support::Slider { direction: [0.0, 1.0], rotation: Rotation::Fixed }),
+        node([0.05, 0.0], Support::Pinned),
+    ];
+    let beam = |start: usize, chord: [f64; 2]| {
+        let shape = Shape::from_chord(chord, &[]).expect("straight");
+        Beam { start_joint: Joint::Hinged, end_joint: Joint::Hinged, ..Beam::new(start, 1, shape, STOUT) }
+    };
+    let beams = vec![beam(0, [0.05, 0.01]), beam(2, [-0.05, 0.01])];
+    Network { before, ..Network::new(nodes, beams, Drive::Force { node: 1, direction: DOWN }) }
+}
+
+/// A dead load does work in a jump whether it came with the drive or before it.
+#[test]
+fn a_jump_sets_the_same_energy_free_in_stages() {
+    let settings = Settings { follow: Follow::ToEnd, ..exact(Theory::Reissner) };
+    let jump = |network: &Network, to: f64| {
+        let path = trace(network, &[to], &settings, &mut |_| true).unwrap();
+        assert!(path.whole_status.is_complete(), "{}", path.whole_status);
+        path.jumps[0]
+    };
+    let at_once = jump(&truss(Vec::new()), 1500.0);
+    let first = 0.5 * at_once.control;
+    let staged = jump(&truss(vec![Stage { drive: Drive::Force { node: 1, direction: DOWN }, to: first }]), 1500.0 - first);
+    near(staged.control + first, at_once.control, 1e-7, "limit load");
+    near(staged.released_j, at_once.released_j, 1e-6, "energy set free");
+}
+
+/// Beyond a limit point gradients are those of the points there, against differences at the same control.
+#[test]
+fn gradients_go_on_beyond_limit_points() {
+    let settings = Settings { follow: Follow::ToEnd, ..exact(Theory::Reissner) };
+    let solved = |network: &Network| trace(network, &[1000.0, 1500.0], &settings, &mut |_| true).unwrap();
+    let network = truss(Vec::new());
+    let path = solved(&network);
+    let mut gradients = path.gradients().unwrap();
+    let thicker = |amount: f64| {
+        let mut network = network.clone();
+        network.beams[0].section.thickness_m += amount;
+        solved(&network)
+    };
+    let h = 1e-6;
+    let (more, less) = (thicker(h), thicker(-h));
+    let mut beyond = 0;
+    for point in path
+        .whole
+        .iter()
+        .filter(|p| p.branch > 0 && (p.control.to_bits() == 1000_f64.to_bits() || p.control.to_bits() == 1500_f64.to_bits()))
+    {
+        let same = |path: &Path| {
+            let found = path.whole.iter().find(|p| p.branch == point.branch && p.control.to_bits() == point.control.to_bits());
+            found.expect("the same stretch").displacement
+        };
+        let gradient = &gradients.at(point, &[Output::Displacement]).unwrap()[0];
+        let by = gradient.by(Parameter::Thickness(0)).unwrap();
+        near(by, (same(&more) - same(&less)) / (2.0 * h), 1e-4, "displacement by thickness");
+        assert!(path.output_stiffness(point).is_some());
+        beyond += 1;
+    }
+    assert!(beyond >= 1, "{beyond}");
+}
+
+/// What has been held cannot be pushed; a branch that a load stage passes is named; points of another path are refused.
+#[test]
+fn stages_are_checked_and_watched() {
+    let push = |drive, before| Network { before, ..cantilever(0.1, 0.0, POM, Support::Free, drive) };
+    let (moment, turn) = (Drive::Moment { node: 1 }, Drive::Rotation { node: 1 });
+    let (force, lift) = (Drive::Force { node: 1, direction: [0.0, 1.0] }, Drive::Displacement { node: 1, direction: [0.0, 2.0] });
+    for (drive, held) in [(moment, turn), (force, lift)] {
+        let blocked = push(drive, vec![Stage { drive: held, to: 0.01 }]);
+        assert!(matches!(blocked.check(), Err(NetworkError::DriveBlocked { node: 1 })));
+        assert!(push(held, vec![Stage { drive, to: 1e-3 }]).check().is_ok());
+    }
+    // Euler's load of a clamped–free column: π² EI/(4 L²).
+    let euler = std::f64::consts::PI.powi(2) * POM.bending_stiffness_n_m2() / (4.0 * 0.01);
+    let along = Drive::Force { node: 1, direction: [-1.0, 0.0] };
+    let column = push(turn, vec![Stage { drive: along, to: 1.5 * euler }]);
+    let path = trace(&column, &[0.01], &exact(Theory::Inextensible), &mut |_| true).unwrap();
+    let branch = path.bifurcations.first().expect("the column buckles in the stage");
+    assert_eq!((branch.stage, branch.before, branch.after), (0, 0, 1));
+    near(branch.force, euler, 1e-5, "Euler's load");
+    let other = trace(&column, &[0.01], &exact(Theory::Inextensible), &mut |_| true).unwrap();
+    let foreign = other.points.first().unwrap_or(&other.before[0]);
+    assert!(path.output_stiffness(foreign).is_none());
+    assert!(matches!(path.gradients().unwrap().at(foreign, &[Output::Force]), Err(GradientError::ForeignPoint)));
+    let many = vec![[0.0, 1e-3], [0.1, 0.9e-3], [0.2, 1e-3], [1.0, 0.8e-3]];
+    let mut pieces = table3_by_shapes(POM);
+    pieces.beams = (0..60).map(|i| Beam { profile: many.clone(), ..pieces.beams[i % 4].clone() }).collect();
+    assert!(matches!(pieces.check(), Err(NetworkError::TooManyPieces { count: 180 })));
 }

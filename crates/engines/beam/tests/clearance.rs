@@ -254,3 +254,36 @@ fn the_paper_mechanism_at_rest_and_pushed() {
         close(alone, by_walking(&network, point), 1e-10, "drawn half");
     }
 }
+
+/// Ends on the arms of one body are not at one place: each may be near something, and near the other.
+#[test]
+fn ends_of_a_rigid_body() {
+    let beam = |start: usize, end: usize, from: [f64; 2], to: [f64; 2]| {
+        rigid(start, end, Shape::from_chord([to[0] - from[0], to[1] - from[1]], &[]).expect("straight"), POM)
+    };
+    let nodes = vec![
+        node([-0.05, 0.0], Support::Clamped),
+        node([0.0, 0.0], Support::Free),
+        node([0.08, 0.04], Support::Clamped),
+        node([-0.004, -0.03], Support::Clamped),
+        node([-0.004, 0.03], Support::Clamped),
+    ];
+    let mut left = beam(0, 1, [-0.05, 0.0], [-0.01, 0.0]);
+    left.arms_m[1] = [-0.01, 0.0];
+    let mut right = beam(1, 2, [0.03, 0.04], [0.08, 0.04]);
+    right.arms_m[0] = [0.03, 0.04];
+    let foreign = beam(3, 4, [-0.004, -0.03], [-0.004, 0.03]);
+    let drive = Drive::Displacement { node: 1, direction: [0.0, 1.0] };
+    is(clearance(&Network::new(nodes.clone(), vec![left, right.clone(), foreign], drive), None, None), 0.006, "a foreign beam");
+    let mut near = beam(0, 1, [-0.05, 0.0], [-0.01, 0.0]);
+    near.arms_m[1] = [-0.01, 0.0];
+    let mut other = beam(1, 2, [-0.006, 0.003], [0.08, 0.04]);
+    other.arms_m[0] = [-0.006, 0.003];
+    is(clearance(&Network::new(nodes, vec![near, other], drive), None, None), 0.005, "two ends on one body");
+    // What is not a network has no clearance.
+    let mut wrong = loose(&[([0.0, 0.0], &[0.0], 0.1), ([0.0, 0.02], &[0.0], 0.1)]);
+    let line = Reflection { point_m: [0.0; 2], direction: [0.0; 2] };
+    assert!(clearance(&wrong, None, Some(line)).is_none());
+    wrong.beams[0].start = 99;
+    assert!(clearance(&wrong, None, None).is_none());
+}

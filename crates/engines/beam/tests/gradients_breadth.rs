@@ -87,7 +87,10 @@ fn value(point: &Point, output: Output) -> f64 {
 
 const MIRROR: Reflection = Reflection { point_m: [0.0; 2], direction: [0.0, 1.0] };
 
-const OUTPUTS: [Output; 11] = [
+const OUTPUTS: [Output; 13] = [
+    // With rigid zones these are inside them.
+    Output::Position { beam: 2, u: 0.005, axis: Axis::Y },
+    Output::Gap { first: (3, 0.003), second: (0, 0.99), reflection: None },
     Output::Gap { first: (0, 0.4), second: (2, 0.7), reflection: None },
     Output::Gap { first: (3, 0.5), second: (2, 0.6), reflection: Some(MIRROR) },
     Output::Force,

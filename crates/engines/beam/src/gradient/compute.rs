@@ -5,6 +5,7 @@ use forcewright_base::maths;
 use super::{
     Axis, Gradient, GradientError, Output,
     closure::ChordSensitivity,
+    design::arm_moments,
     field::{self, BeamRhs, Field, Place, Sensitivity},
     seed::{Seed, polished_place, position_slope, stress_slope},
 };
@@ -24,10 +25,14 @@ use crate::{
 pub struct Gradients<'p> {
     pub(super) model: &'p Model,
     pub(super) zones: &'p Zones,
+    path: &'p Path,
     stage: Stage<'p>,
+    /// For points beyond limit points, where the resolution may be another.
+    beyond: Stage<'p>,
     pub(super) closures: Vec<ChordSensitivity>,
     /// What the loads before the drive left behind, and how it depends on the design.
     origins: Vec<(Origin, Design)>,
+    counters: Counters,
 }
 
 /// Something that a load found when it began.
@@ -109,12 +114,21 @@ impl Path {
     /// # Errors
     /// [`GradientError::ClosedLoop`], or [`GradientError::LimitPoint`] if a load before the drive ends at one.
     pub fn gradients(&self) -> Result<Gradients<'_>, GradientError> {
-        let (model, resolution) = self.equations();
+        let (model, [resolution, beyond]) = self.equations();
         let mut closures = Vec::with_capacity(model.spans.len());
         for (beam, (_, line)) in model.spans.iter().enumerate() {
             closures.push(line.shape.chord_sensitivity().map_err(|_| GradientError::ClosedLoop { beam })?);
         }
-        let mut gradients = Gradients { model, zones: self.zones(), stage: Stage::new(model, resolution), closures, origins: Vec::new() };
+        let mut gradients = Gradients {
+            path: self,
+            model,
+            zones: self.zones(),
+            stage: Stage::new(model, resolution),
+            beyond: Stage::new(model, beyond),
+            closures,
+            origins: Vec::new(),
+            counters: Counters::default(),
+        };
         gradients.find_origins(&self.before, resolution)?;
         Ok(gradients)
     }
@@ -124,22 +138,30 @@ impl Path {
 const LARGEST_RESIDUE: f64 = 1e-5;
 
 impl<'p> Gradients<'p> {
-    /// Work done so far: one evaluation and one factorisation per call of [`Gradients::at`].
+    /// Work done so far: one evaluation and one factorisation per call of [`Gradients::at`], and one per load before the drive.
     pub fn counters(&self) -> Counters {
-        Counters {
-            newton_iterations: self.stage.newton_steps,
-            residual_evaluations: self.stage.system.evaluations,
-            factorisations: self.stage.system.factorisations,
-            ..Counters::default()
-        }
+        self.counters + self.stage.counters() + self.beyond.counters()
     }
 
-    /// The gradients of some outputs at a point of the path, one of [`Path::points`] or from [`Path::at`].
+    /// The gradients of some outputs at a point of the path: one of [`Path::points`] or [`Path::whole`], or from [`Path::at`].
     ///
     /// # Errors
     /// [`GradientError`] if an output names what does not exist, the point is not of this path, or it is a limit point.
     pub fn at(&mut self, point: &Point, outputs: &[Output]) -> Result<Vec<Gradient>, GradientError> {
+        let resolution = self.path.resolution_of(point).ok_or(GradientError::ForeignPoint)?;
         outputs.iter().try_for_each(|output| self.check(output, point))?;
+        let elsewhere = !std::ptr::eq(resolution, self.stage.resolution);
+        if elsewhere {
+            std::mem::swap(&mut self.stage, &mut self.beyond);
+        }
+        let gradients = self.at_own(point, outputs);
+        if elsewhere {
+            std::mem::swap(&mut self.stage, &mut self.beyond);
+        }
+        gradients
+    }
+
+    fn at_own(&mut self, point: &Point, outputs: &[Output]) -> Result<Vec<Gradient>, GradientError> {
         self.stage.linearise(point)?;
         let model = self.model;
         let state = std::mem::take(&mut self.stage.state);
@@ -161,9 +183,6 @@ impl<'p> Gradients<'p> {
                 Err(GradientError::NoBeam { beam })
             }
             Output::Stress { u, .. } | Output::Position { u, .. } if !(0.0..=1.0).contains(&u) => Err(GradientError::NotOnBeam { u }),
-            Output::Position { beam, u, .. } if point.beams.get(beam).is_some_and(|b| u < b.flexible()[0] || u > b.flexible()[1]) => {
-                Err(GradientError::RigidPart { u })
-            }
             Output::NodeDisplacement { node, .. } | Output::NodeRotation { node } if node >= self.model.drawn_nodes => {
                 Err(GradientError::NoNode { node })
             }
@@ -201,6 +220,8 @@ impl<'p> Gradients<'p> {
             // The displacement along an earlier force is of no further use.
             self.origins.retain(|(origin, _)| matches!(origin, Origin::Held(_)));
             self.origins.push((origin, design));
+            drop(fields);
+            self.counters = self.counters + stage.counters();
         }
         Ok(())
     }
@@ -291,11 +312,42 @@ impl<'p> Gradients<'p> {
         }
     }
 
+    /// A place in a rigid part: from where it ends, by the vector between them at rest, turned with the end.
+    fn add_rigid_part(&self, parts: &mut Dependence, state: &[f64], piece: usize, at: (usize, f64, f64), axis: [f64; 2]) {
+        let (beam, u, edge) = at;
+        let (model, line) = (self.model, &self.model.spans[beam].1);
+        let (here, there) = (line.shape.point_m(u), line.shape.point_m(edge));
+        let rest = [0, 1].map(|i| (here[i] - there[i]) / model.length_m);
+        let end = usize::from(u > edge);
+        let turn = model.beams[piece].ends[end];
+        let rotation = Model::rotation(turn, state);
+        let moved = swing(rest, rotation);
+        if let Some(place) = turn {
+            parts.rhs[place] += field::dot(axis, field::turned([rest[0] + moved[0], rest[1] + moved[1]]));
+        }
+        let back = swing(axis, -rotation);
+        let seen = [axis[0] + back[0], axis[1] + back[1]];
+        let (sum, length) = (&mut parts.design.pieces[piece], line.shape.length_m() / model.length_m);
+        for (target, moment) in sum.angles.iter_mut().zip(arm_moments(line, edge, u)) {
+            *target += length * field::dot(seen, field::turned(moment));
+        }
+        sum.beam_length += field::dot(seen, rest);
+        // Where the edge moves, the vector grows shorter.
+        let (sin, cos) = maths::sin_cos(line.shape.angle_at(edge));
+        sum.range[end] -= length * field::dot(seen, [cos, sin]);
+    }
+
     /// The place on the axis, in units of length along a direction: the start of the beam, all pieces before, and the last piece up to it.
     fn add_position(&self, parts: &mut Dependence, point: &Point, fields: &[Field], state: &[f64], at: (usize, f64, [f64; 2])) {
-        let (beam, u, axis) = at;
+        let (beam, place, axis) = at;
         let model = self.model;
         let span = model.spans[beam].0.clone();
+        let [from, to] = point.beams[beam].flexible();
+        let u = place.clamp(from, to);
+        if place < from || place > to {
+            let piece = if place < from { span.start } else { span.end - 1 };
+            self.add_rigid_part(parts, state, piece, (beam, place, u), axis);
+        }
         let first = &model.beams[span.start];
         let shift = &mut parts.design.shift[first.nodes[0]];
         *shift = [0, 1].map(|i| shift[i] + axis[i]);
@@ -419,6 +471,15 @@ impl<'p> Stage<'p> {
     fn new(model: &'p Model, resolution: &'p Resolution) -> Self {
         let system = System::new(model, resolution);
         Self { model, resolution, system, state: Vec::new(), tangent: Vec::new(), newton_steps: 0 }
+    }
+
+    fn counters(&self) -> Counters {
+        Counters {
+            newton_iterations: self.newton_steps,
+            residual_evaluations: self.system.evaluations,
+            factorisations: self.system.factorisations,
+            ..Counters::default()
+        }
     }
 
     /// Linearises the equations at a point and finds the tangent there.

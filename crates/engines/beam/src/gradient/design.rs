@@ -55,7 +55,7 @@ impl Gradients<'_> {
             // EI/L ∝ E w³ b/L, 1/EA ∝ 1/(E w b), 1/kGA ∝ (1 + ν)/(E w b).
             let soft = s.axial + s.shear;
             let by_length = unit * (s.length - s.bending);
-            sum.length += by_length / length_m;
+            sum.length += (by_length + unit * s.beam_length) / length_m;
             sum.thickness += unit * (3.0 * s.bending - soft + s.thickness) / section.thickness_m;
             sum.depth += unit * (s.bending - soft + s.depth) / section.depth_m;
             sum.young += unit * (s.bending - soft) / section.young_pa;
@@ -173,7 +173,7 @@ fn add_thickness(beam: &mut Collected, end: usize, value: f64) {
 }
 
 /// ∫ uᵏ (cos η, sin η) du from one place of a beam to another, k = 0 … m.
-fn arm_moments(line: &BeamLine, from: f64, to: f64) -> Vec<[f64; 2]> {
+pub(super) fn arm_moments(line: &BeamLine, from: f64, to: f64) -> Vec<[f64; 2]> {
     // A zone turns little: one panel does.
     let rule = GaussLegendre::new(16);
     let mut sums = vec![[0.0; 2]; line.shape.angle_rad().len()];

@@ -19,6 +19,8 @@ pub(super) struct Sensitivity {
     pub(super) angles: Vec<f64>,
     /// By the length with the next three held.
     pub(super) length: f64,
+    /// By the length of the whole beam, where that of the piece does not come in.
+    pub(super) beam_length: f64,
     /// By EI/L.
     pub(super) bending: f64,
     /// By 1/EA.
@@ -70,6 +72,7 @@ impl Sensitivity {
         Self {
             angles: vec![0.0; coefficients],
             length: 0.0,
+            beam_length: 0.0,
             bending: 0.0,
             axial: 0.0,
             shear: 0.0,
@@ -114,6 +117,7 @@ impl Sensitivity {
             *a += factor * b;
         }
         self.length += factor * other.length;
+        self.beam_length += factor * other.beam_length;
         self.bending += factor * other.bending;
         self.axial += factor * other.axial;
         self.shear += factor * other.shear;
