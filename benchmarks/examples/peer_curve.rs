@@ -54,7 +54,7 @@ fn design() -> Design {
 
 /// Equal steps that end at the travel, the last station; rest is not one of them.
 fn stations(design: &Design) -> Vec<f64> {
-    (1..=STATIONS).map(|i| design.travel_m * f64::from(i) / f64::from(STATIONS)).collect()
+    (1..=STATIONS).map(|i| design.load_end * f64::from(i) / f64::from(STATIONS)).collect()
 }
 
 /// What is solved, and how well.

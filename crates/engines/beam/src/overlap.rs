@@ -13,7 +13,7 @@ use forcewright_base::maths;
 
 use crate::{
     error::NetworkError,
-    network::{Joint, Network, is_zero},
+    network::{Joint, Joints, Network, is_zero},
 };
 
 /// Least part of a beam that has to remain flexible.
@@ -95,6 +95,20 @@ impl Zones {
             zones.flexible[beam] = [start, 1.0 - end];
         }
         Ok(zones)
+    }
+}
+
+impl Network {
+    /// Checks that joints leave every beam something to bend; beams that meet in points always do. Not part of [`Network::check`],
+    /// because it depends on [`crate::Settings::joints`].
+    ///
+    /// # Errors
+    /// [`NetworkError::AllRigid`] names the first beam that is rigid nearly all along. The network must be sound otherwise.
+    pub fn check_joints(&self, joints: Joints) -> Result<(), NetworkError> {
+        match joints {
+            Joints::Point => Ok(()),
+            Joints::Overlap => Zones::of(self).map(|_| ()),
+        }
     }
 }
 

@@ -614,7 +614,7 @@ fn stages_are_checked_and_watched() {
         assert!(push(held, vec![Stage { drive, to: 1e-3 }]).check().is_ok());
     }
     // Euler's load of a clamped–free column: π² EI/(4 L²).
-    let euler = std::f64::consts::PI.powi(2) * POM.bending_stiffness_n_m2() / (4.0 * 0.01);
+    let euler = std::f64::consts::PI * std::f64::consts::PI * POM.bending_stiffness_n_m2() / (4.0 * 0.01);
     let along = Drive::Force { node: 1, direction: [-1.0, 0.0] };
     let column = push(turn, vec![Stage { drive: along, to: 1.5 * euler }]);
     let path = trace(&column, &[0.01], &exact(Theory::Inextensible), &mut |_| true).unwrap();

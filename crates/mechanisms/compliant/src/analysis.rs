@@ -1,7 +1,7 @@
 //! From a design to its behaviour: the equilibrium path, the force curve, the stress, the metrics.
 
 use forcewright_base::units::Unit;
-use forcewright_beam::{NetworkError, Path, PeakStress, Point, Settings, Status, trace};
+use forcewright_beam::{Follow, Jump, NetworkError, Path, PeakStress, Point, Settings, Status, trace};
 use forcewright_contract::family::Progress;
 use forcewright_model as model;
 
@@ -9,6 +9,7 @@ use crate::design::Design;
 use crate::force_curve::{Extrema, ForceCurve, Interval};
 use crate::metrics::METRICS;
 use crate::room::{Margin, Nearest, margin, nearest};
+use crate::sway::Sway;
 
 /// Stations of the first attempt, and the most that are tried to keep the interpolation between them below its share of the error.
 const STATIONS: [usize; 4] = [128, 256, 512, 1024];
@@ -32,6 +33,19 @@ pub struct Behaviour {
     pub unstable_from_m: Option<f64>,
     /// Interpolation error of the curve relative to the largest force.
     pub interpolation_error: f64,
+    /// What a slowly driven device does where the path ends at a limit point; `None` where it does not, or where that is not known.
+    pub snap: Option<Snap>,
+    /// How the whole layout resists sideways, where symmetry separates that from the motion along the load.
+    pub sway: Option<Sway>,
+}
+
+/// What a slowly driven device does at the limit point at which its path ends. SI, of the drawn network.
+#[derive(Clone, Copy, Debug)]
+pub enum Snap {
+    /// It jumps to a later stretch of the path.
+    Lands(Jump),
+    /// Up to the end of the load there is nothing on this path to land on.
+    Nowhere,
 }
 
 /// The largest stress of a path and where it is.
@@ -51,7 +65,7 @@ impl Behaviour {
     /// # Errors
     /// [`NetworkError`] if the network makes no sense; a design that was resolved has been checked.
     pub fn of(design: &Design, progress: Progress<'_>) -> Result<Self, NetworkError> {
-        let settings = Settings { theory: design.theory, accuracy: design.accuracy, ..Settings::default() };
+        let settings = design.settings();
         let mut result = None;
         // A second attempt begins anew, but progress never goes back.
         let mut furthest = 0.0_f64;
@@ -60,7 +74,7 @@ impl Behaviour {
             progress(furthest)
         };
         for count in STATIONS {
-            let stations: Vec<f64> = (0..=count).map(|i| design.travel_m * i as f64 / count as f64).collect();
+            let stations: Vec<f64> = (0..=count).map(|i| design.load_end * i as f64 / count as f64).collect();
             let path = trace(&design.network, &stations, &settings, &mut progress)?;
             let behaviour = Self::from_path(path, design.copies());
             let enough = behaviour.interpolation_error <= INTERPOLATION || !behaviour.whole;
@@ -69,7 +83,12 @@ impl Behaviour {
                 break;
             }
         }
-        result.ok_or(NetworkError::NoBeams)
+        let mut behaviour = result.ok_or(NetworkError::NoBeams)?;
+        if matches!(behaviour.path.status, Status::NoEquilibriumBeyond { .. }) && !behaviour.path.points.is_empty() {
+            behaviour.snap = snap(design, &settings, &mut progress)?;
+        }
+        behaviour.sway = Sway::of(design, &behaviour.path);
+        Ok(behaviour)
     }
 
     fn from_path(path: Path, copies: f64) -> Self {
@@ -77,11 +96,13 @@ impl Behaviour {
         let unstable_from_m = unstable.map(|p| path.bifurcations.first().map_or(p.displacement, |b| b.displacement.min(p.displacement)));
         let whole = matches!(path.status, Status::Complete | Status::NotResolved { .. });
         let pick = |f: fn(&Point) -> f64, scale: f64| path.points.iter().map(|p| scale * f(p)).collect::<Vec<_>>();
-        let curve = (path.points.len() >= 2)
+        // Under a growing force the displacement may turn back: then there is no force over it.
+        let ascends = path.points.windows(2).all(|p| p[0].displacement < p[1].displacement);
+        let curve = (path.points.len() >= 2 && ascends)
             .then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)));
         let largest = path.points.iter().map(|p| copies * p.force.abs()).fold(0.0, f64::max);
         let interpolation_error = curve.as_ref().map_or(0.0, |c| if largest > 0.0 { c.error_n() / largest } else { 0.0 });
-        Self { path, curve, copies, whole, unstable_from_m, interpolation_error }
+        Self { path, curve, copies, whole, unstable_from_m, interpolation_error, snap: None, sway: None }
     }
 
     /// The largest stress up to the end of the path.
@@ -99,14 +120,15 @@ impl Behaviour {
             // The first of equals, for the same answer everywhere.
             all.reduce(|best, next| if load(&next) > load(&best) { next } else { best })
         };
-        let stations: Vec<LargestStress> = self.path.points.iter().filter_map(of).collect();
+        let points = &self.path.points;
+        let stations: Vec<LargestStress> = points.iter().filter_map(of).collect();
         let falling: Vec<f64> = stations.iter().map(|s| -load(s)).collect();
         let best = (0..stations.len()).reduce(|b, i| if falling[i] < falling[b] { i } else { b })?;
         if !may_be_inside(&falling, best) {
             return stations.get(best).copied();
         }
         let value = |x: f64| self.path.at(x).ok().and_then(|p| of(&p));
-        let (left, right) = (stations[best.saturating_sub(1)].at_m, stations[(best + 1).min(stations.len() - 1)].at_m);
+        let (left, right) = (points[best.saturating_sub(1)].control, points[(best + 1).min(points.len() - 1)].control);
         let found = forcewright_base::roots::minimise(|x| value(x).map_or(f64::NAN, |s| -load(&s)), left, right, 1e-6 * right);
         value(found.x).filter(|s| load(s) > -falling[best]).or(stations.get(best).copied())
     }
@@ -120,7 +142,13 @@ impl Behaviour {
         let first = self.path.points.iter().position(|p| excess(p) >= 0.0)?;
         let (before, after) = (self.path.points.get(first.checked_sub(1)?)?, &self.path.points[first]);
         let at = |x: f64| self.path.at(x).map_or(f64::NAN, |p| excess(&p));
-        forcewright_base::roots::root(at, before.control, after.control, 1e-12 * after.control).ok()
+        let found = forcewright_base::roots::root(at, before.control, after.control, 1e-12 * after.control).ok()?;
+        self.displacement_at(found)
+    }
+
+    /// The displacement at a value of the control, m.
+    fn displacement_at(&self, control: f64) -> Option<f64> {
+        self.path.at(control).ok().map(|p| p.displacement)
     }
 
     /// Least tangent stiffness of the whole layout over the path, N/m, and where, m.
@@ -146,7 +174,8 @@ impl Behaviour {
         let (left, right) = (best.saturating_sub(1), (best + 1).min(points.len() - 1));
         let right = points[right].control;
         let found = forcewright_base::roots::minimise(value, points[left].control, right, 1e-6 * right);
-        Some(if found.value < station.0 { (found.value, found.x) } else { station })
+        let inside = self.displacement_at(found.x).filter(|_| found.value < station.0);
+        Some(inside.map_or(station, |at| (found.value, at)))
     }
 
     /// First local maximum of the force and first minimum after it, found on the curve and placed where the tangent vanishes: next to a
@@ -160,11 +189,12 @@ impl Behaviour {
     /// The extremum near the one that was read off the curve; that one itself if the tangent does not change its sign around it.
     fn placed(&self, read: (f64, f64)) -> (f64, f64) {
         let points = &self.path.points;
-        let after = points.partition_point(|p| p.control <= read.0).clamp(1, points.len() - 1);
+        let after = points.partition_point(|p| p.displacement <= read.0).clamp(1, points.len() - 1);
         let stiffness = |x: f64| self.path.at(x).map_or(f64::NAN, |p| p.stiffness);
         let (left, right) = (points[after - 1].control, points[after].control);
         let exact = forcewright_base::roots::root(stiffness, left, right, 1e-14 * right).ok();
-        exact.and_then(|x| Some((x, self.copies * self.path.at(x).ok()?.force))).unwrap_or(read)
+        let exact = exact.and_then(|x| self.path.at(x).ok());
+        exact.map_or(read, |p| (p.displacement, self.copies * p.force))
     }
 
     /// Where a force-driven device would jump: from the first local maximum, to the displacement beyond it that carries the same force
@@ -176,6 +206,27 @@ impl Behaviour {
         let to = curve.extrema().min.and_then(|(dip, _)| curve.crossings(level).into_iter().find(|x| *x > dip));
         Some((from, to))
     }
+}
+
+/// Stations at which the path is followed beyond its limit point.
+const BEYOND: usize = 32;
+
+/// Follows a path that ends at a limit point up to the end of the load, only to see what a device does there.
+fn snap(design: &Design, settings: &Settings, progress: Progress<'_>) -> Result<Option<Snap>, NetworkError> {
+    let settings = Settings { follow: Follow::ToEnd, accuracy: settings.accuracy.max(1e-6), ..*settings };
+    let stations: Vec<f64> = (1..=BEYOND).map(|i| design.load_end * i as f64 / BEYOND as f64).collect();
+    let path = trace(&design.network, &stations, &settings, progress)?;
+    // A device that has left the path before the limit point does not come there.
+    let Some(fold) = path.folds.first() else { return Ok(None) };
+    if path.whole.iter().take(fold.index).any(|p| p.instability > 0) {
+        return Ok(None);
+    }
+    // A landing is where the control is that of the limit point again: it lies within the load or nowhere on this path.
+    Ok(match (path.jumps.first(), path.whole_status) {
+        (Some(jump), _) => Some(Snap::Lands(*jump)),
+        (None, Status::Complete | Status::NotResolved { .. } | Status::NoEquilibriumBeyond { .. }) => Some(Snap::Nowhere),
+        _ => None,
+    })
 }
 
 /// Whether a value below that of the least station may lie beside it: between two neighbours, or next to an end where the parabola
@@ -254,12 +305,12 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     if !behaviour.whole {
         return m;
     }
-    let travel = curve.end();
-    m.set("force_at_end", curve.force(travel));
+    let (end, travel) = (curve.end(), curve.end() - curve.start());
+    m.set("force_at_end", curve.force(end));
     m.set("energy_at_end", behaviour.path.points.last().map(|p| behaviour.copies * p.energy_j));
     let start = curve.range_start(RANGE_FRACTION);
     m.set("range_start", start);
-    m.set("range_ratio", start.map(|c| (travel - c) / travel));
+    m.set("range_ratio", start.map(|c| (end - c) / travel));
     let force = design.requirements.as_ref().and_then(|r| r.force);
     let band = force.map_or(PAPER_BAND, |(band, _)| band);
     let flat = curve.longest_flat(band);
@@ -284,6 +335,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m.set("stiffness_min", m.stiffness.map(|(k, _)| k));
     m.set("clearance_min", m.nearest.map(|n| n.clearance.distance_m));
     m.set("envelope_margin", m.margin.map(|e| e.margin_m));
+    m.set("lateral_stiffness_min", behaviour.sway.and_then(|s| s.least_n_per_m));
     m.set("stress_max", m.stress.map(|s| s.peak.stress_pa));
     if beams.clone().all(|beam| design.yield_pa(beam).is_some()) {
         m.set("safety_factor", m.loaded.and_then(|s| Some(design.yield_pa(s.beam)? / s.peak.stress_pa)).filter(|f| f.is_finite()));
@@ -299,10 +351,19 @@ fn length_ratio(design: &Design) -> Option<f64> {
     design.network.beams.iter().map(ratio).reduce(f64::max)
 }
 
+/// Volume of a beam, m³: the thickness is linear between places.
+fn volume_m3(beam: &forcewright_beam::Beam) -> f64 {
+    if beam.profile.is_empty() {
+        return beam.section.area_m2() * beam.shape.length_m();
+    }
+    let mean_m: f64 = beam.profile.windows(2).map(|p| (p[1][0] - p[0][0]) * f64::midpoint(p[0][1], p[1][1])).sum();
+    mean_m * beam.section.depth_m * beam.shape.length_m()
+}
+
 /// Mass of all beams of the whole layout, kg, if every density is known.
 fn mass_kg(design: &Design) -> Option<f64> {
     let beams = design.network.beams.iter().enumerate();
-    let masses = beams.map(|(i, b)| Some(design.material_of(i)?.density_kg_per_m3? * b.section.area_m2() * b.shape.length_m()));
+    let masses = beams.map(|(i, b)| Some(design.material_of(i)?.density_kg_per_m3? * volume_m3(b)));
     Some(design.copies() * masses.sum::<Option<f64>>()?)
 }
 
@@ -341,59 +402,4 @@ pub(crate) fn metrics(design: &Design, measured: &Measured) -> Vec<model::Metric
             })
         })
         .collect()
-}
-
-/// How the solve ended, in words.
-pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
-    use model::StatusKind as K;
-    let show = |x: f64| forcewright_base::units::format_si(x, &design.units.displacement, 6);
-    let travel = show(design.travel_m);
-    let beam = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
-    let node = |i: usize| design.node_names.get(i).map_or("?", String::as_str);
-    if let Some(from) = behaviour.unstable_from_m.filter(|_| behaviour.whole) {
-        return model::Status {
-            kind: K::UnstableBeyond,
-            message: format!("the path branches at Δ = {}: beyond, a real part leaves the computed shape sideways", show(from)),
-            advice: Some(
-                "give the design the imperfection of a real part (a small bend, a shifted node) and follow the branch that it takes"
-                    .to_owned(),
-            ),
-        };
-    }
-    let (kind, message, advice) = match behaviour.path.status {
-        Status::Complete => (K::Complete, format!("the whole travel of {travel} was computed"), None),
-        Status::NotResolved { error_estimate, accuracy } => (
-            K::ReducedAccuracy,
-            format!("the forces are accurate to about {error_estimate:.1e} of the largest one, not to the {accuracy:.1e} asked for"),
-            Some("split strongly bent beams, or ask for less by `model.accuracy`".to_owned()),
-        ),
-        Status::NoEquilibriumBeyond { control } => (
-            K::NoEquilibriumBeyond,
-            format!("there is no neighbouring equilibrium beyond Δ = {}: the mechanism snaps before the travel of {travel}", show(control)),
-            Some(format!("shorten `load.travel` to less than {}, or change the shape", show(control))),
-        ),
-        Status::StepTooSmall { control } => (
-            K::NotConverged,
-            format!("the solver's steps became too small at Δ = {}", show(control)),
-            Some("the equilibrium may branch there: break the symmetry of the design a little, or shorten `load.travel`".to_owned()),
-        ),
-        Status::OverConstrained { beam: b } => (
-            K::NotConverged,
-            format!("the force in beam `{}` is undetermined at rest: inextensible beams are over-constrained here", beam(b)),
-            Some("use `model.beam = \"reissner\"`, or bend the beam a little".to_owned()),
-        ),
-        Status::Mechanism { node: n } => (
-            K::NotConverged,
-            format!("node `{}` can move at rest without a force", node(n)),
-            Some("add a support, or make a hinge rigid".to_owned()),
-        ),
-        Status::IterationLimit { control, limit } => (
-            K::NotConverged,
-            format!("stopped at Δ = {} after {limit} Newton iterations", show(control)),
-            Some("shorten `load.travel`, or ask for less by `model.accuracy`".to_owned()),
-        ),
-        Status::Stopped { control } => (K::Interrupted, format!("stopped on request at Δ = {}", show(control)), None),
-        _ => (K::NotConverged, "the solver stopped".to_owned(), None),
-    };
-    model::Status { kind, message, advice }
 }

@@ -6,6 +6,7 @@ use forcewright_model::{Check, CheckState, Sense};
 
 use crate::analysis::{Behaviour, Measured, display_unit};
 use crate::design::{Design, Requirements, StressLimit};
+use crate::loads::Control;
 use crate::metrics::METRICS;
 
 /// Every requirement of the project, in the order of the language.
@@ -228,7 +229,11 @@ impl Context<'_> {
         // A travel below the stroke asked for is no way out.
         let useful = |x: &f64| self.requirements.travel_m.is_none_or(|t| *x >= t);
         let until = self.measured.get("travel_at_allowable_stress").filter(useful).map_or_else(String::new, |x| {
-            format!("keep `load.travel` at or below {}, or ", shown_below(x, &self.design.units.displacement))
+            let (key, units) = (&self.design.load_key, &self.design.units);
+            match (self.design.control, &self.behaviour.curve) {
+                (Control::Force, Some(curve)) => format!("keep `{key}` at or below {}, or ", shown_below(curve.force(x), &units.force)),
+                _ => format!("keep `{key}` at or below {}, or ", shown_below(x, &units.displacement)),
+            }
         });
         let ratio = found.zip(allowable_pa).map_or(1.0, |(s, allowed)| s.peak.stress_pa / allowed);
         // Stretching changes with the thickness at equal bending stiffness, and the shape with it: 2 % to spare.

@@ -215,7 +215,7 @@ impl Joints {
         };
         let chord = |length: f64| length / CHORDS as f64;
         let lengths = [one.shape.length_m(), other.shape.length_m()];
-        let reach = (JOINT_THICKNESSES * one.section.thickness_m.max(other.section.thickness_m)).max(chord(lengths[0].max(lengths[1])));
+        let reach = (JOINT_THICKNESSES * thickest_m(one).max(thickest_m(other))).max(chord(lengths[0].max(lengths[1])));
         let hidden = lengths.map(|length| (0..CHORDS).take_while(|i| *i as f64 * chord(length) < reach).count());
         Self { hidden, joined }
     }
@@ -228,9 +228,20 @@ impl Joints {
     }
 }
 
+/// Largest thickness of a beam, m.
+fn thickest_m(beam: &Beam) -> f64 {
+    if beam.profile.is_empty() { beam.section.thickness_m } else { beam.profile.iter().map(|p| p[1]).fold(0.0, f64::max) }
+}
+
 /// Lays the deformed axis of a beam from its start: what [`BeamState::shape_m`] gives, but each chord goes on from the one before, for a
 /// fraction of the work.
 fn lay(beam: &Beam, state: &BeamState, theory: Theory, start: [f64; 2], points: &mut Vec<[f64; 2]>) {
+    // Rigid ends and varying thickness are left to the engine.
+    let [from, to] = state.flexible();
+    if !beam.profile.is_empty() || from > 0.0 || to < 1.0 {
+        points.extend((0..=CHORDS).map(|i| state.shape_m(place(i))));
+        return;
+    }
     let (axial, shear) = match theory {
         Theory::Inextensible => (0.0, 0.0),
         Theory::Reissner => (1.0 / beam.section.axial_stiffness_n(), 1.0 / beam.section.shear_stiffness_n()),

@@ -3,12 +3,13 @@
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Quantity, Unit};
-use forcewright_beam::{Beam, Drive, Joint, Network, Node, Rotation, Section, Shape, Support, Theory, ThroughError};
-use forcewright_contract::describe::{Located, Member, Origin, Slot};
+use forcewright_beam::{Beam, Joint, Joints, Network, Node, Rotation, Section, Settings, Shape, Support, Theory, ThroughError};
+use forcewright_contract::describe::{Along, Located, Member, Origin, Slot};
 
+use crate::loads::{self, Control, Loads};
 use crate::material::{Material, check_complete, fill_materials, typed_material};
 use crate::metrics::METRICS;
-use crate::rules::{check_held, check_mirror, check_network};
+use crate::rules::{check_held, check_joints, check_mirror, check_network};
 use crate::spec::{self, Spec};
 
 /// A design, ready to be solved. SI units.
@@ -24,18 +25,24 @@ pub struct Design {
     pub beam_names: Vec<String>,
     /// The mirror line, if there is a mirrored half.
     pub mirror: Option<Mirror>,
-    /// The moved node.
+    /// The node of the last load.
     pub load_node: usize,
     /// Unit vector of the displacement.
     pub direction: [f64; 2],
-    /// Largest displacement d, m.
-    pub travel_m: f64,
+    /// What grows along the path: the displacement or the force.
+    pub control: Control,
+    /// Its largest value: the displacement d, m, or the force on the drawn network, N.
+    pub load_end: f64,
+    /// Where that value stands in the project.
+    pub load_key: String,
     /// What the beams are made of.
     pub materials: Vec<Material>,
     /// Index of the material of each beam, in the order of the network.
     pub beam_materials: Vec<usize>,
     /// Beam model.
     pub theory: Theory,
+    /// How beams of finite thickness meet.
+    pub joints: Joints,
     /// Error allowed, relative to the largest force.
     pub accuracy: f64,
     /// What it must do; `None` if the project asks for nothing.
@@ -48,6 +55,11 @@ impl Design {
     /// How many copies of the drawn network share the force.
     pub fn copies(&self) -> f64 {
         if self.mirror.is_some() { 2.0 } else { 1.0 }
+    }
+
+    /// How its path is computed.
+    pub fn settings(&self) -> Settings {
+        Settings { theory: self.theory, accuracy: self.accuracy, joints: self.joints, ..Settings::default() }
     }
 }
 
@@ -67,6 +79,16 @@ impl Mirror {
             Self::X(at) => [2.0 * at - x, y],
             Self::Y(at) => [x, 2.0 * at - y],
         }
+    }
+
+    /// Whether a point lies on the line, to within rounding at the size of a network.
+    pub fn holds(self, network: &Network, [x, y]: [f64; 2]) -> bool {
+        let size = network.beams.iter().map(|b| b.shape.length_m()).fold(0.0, f64::max);
+        let off = match self {
+            Self::X(at) => x - at,
+            Self::Y(at) => y - at,
+        };
+        off.abs() <= 1e-9 * size
     }
 }
 
@@ -167,27 +189,21 @@ pub(crate) fn si(slot: Option<&Located<Quantity>>) -> Option<f64> {
 /// Reads a design from what was typed. Everything wrong goes into `diagnostics`.
 pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
     let place = spec.design.present.as_ref().map(|p| p.span).unwrap_or_default();
-    if spec.model.joints.as_ref().is_some_and(|j| j.value == "overlap") {
-        let span = spec.model.joints.as_ref().map(|j| j.span).unwrap_or_default();
-        diagnostics.push(
-            Diagnostic::error("E0306", span, "`overlap` is part of the language but not of this version")
-                .label("not available yet")
-                .help("use \"point\"; the report says what rigid zones at the joints would add"),
-        );
-    }
     // Members in the order of their names: the result does not depend on the order of the file.
     spec.design.nodes.sort_by(|a, b| a.name.value.cmp(&b.name.value));
     spec.design.beams.sort_by(|a, b| a.name.value.cmp(&b.name.value));
     let used = fill_materials(spec, diagnostics);
     let requirements = requirements_of(spec, used.materials.iter().all(|m| m.yield_pa.is_some()), diagnostics);
     let mut builder = Builder { spec, diagnostics, place };
-    let (network, direction) = builder.network()?;
-    let mirror = builder.mirror(direction);
+    let (network, loads) = builder.network()?;
+    let mirror = builder.mirror(&network, &loads);
     if diagnostics.has_errors() {
         return None;
     }
     check_network(&network, spec, place, diagnostics);
     check_held(&network, spec, diagnostics);
+    let joints = joints_of(spec);
+    check_joints(&network, joints, spec, place, diagnostics);
     if let Some(mirror) = mirror {
         check_mirror(&network, mirror, spec, diagnostics);
     }
@@ -202,11 +218,14 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         node_names: spec.design.nodes.iter().map(|n| n.name.value.clone()).collect(),
         beam_names: spec.design.beams.iter().map(|b| b.name.value.clone()).collect(),
         mirror,
-        direction,
-        travel_m: si(spec.load.travel.as_ref())?,
+        direction: loads.direction,
+        control: loads.control,
+        load_end: loads.end,
+        load_key: loads.key,
         materials: used.materials,
         beam_materials: used.of_beams,
         theory: theory_of(spec),
+        joints,
         accuracy: si(spec.model.accuracy.as_ref())?,
         requirements,
         units,
@@ -220,9 +239,17 @@ fn theory_of(spec: &Spec) -> Theory {
     }
 }
 
+fn joints_of(spec: &Spec) -> Joints {
+    match spec.model.joints.as_ref().map(|j| j.value) {
+        Some("overlap") => Joints::Overlap,
+        _ => Joints::Point,
+    }
+}
+
 fn display_units(spec: &Spec) -> DisplayUnits {
-    let displacement = unit_or(quantity(spec.load.travel.as_ref()), "mm", Dimension::Length);
-    let force = unit_or(quantity(spec.requirements.force.nominal.as_ref()), "N", Dimension::Force);
+    let displacement = unit_or(quantity(loads::last_travel(spec)), "mm", Dimension::Length);
+    let force = quantity(spec.requirements.force.nominal.as_ref()).or(quantity(loads::last_force(spec)));
+    let force = unit_or(force, "N", Dimension::Force);
     let typed = spec.requirements.stiffness.min.as_ref().filter(|s| s.origin == Origin::File).map(|s| &s.value);
     let slope = format!("{}/{}", force.symbol(), displacement.symbol());
     let first_node = spec.design.nodes.iter().find_map(|n| n.value.at.as_ref()).map(|at| &at.value[0]);
@@ -337,7 +364,7 @@ fn check_stroke(spec: &Spec, sound: bool, diagnostics: &mut Diagnostics) {
         ),
         _ => {}
     }
-    if let (Some(stroke), Some(travel)) = (&requirements.travel, &spec.load.travel)
+    if let (Some(stroke), Some(travel)) = (&requirements.travel, loads::last_travel(spec))
         && stroke.value.si > travel.value.si
     {
         diagnostics.push(
@@ -348,7 +375,7 @@ fn check_stroke(spec: &Spec, sound: bool, diagnostics: &mut Diagnostics) {
             )
             .label("longer than the travel")
             .related(travel.span, "the travel")
-            .help("ask for a shorter stroke, or lengthen `load.travel`"),
+            .help("ask for a shorter stroke, or lengthen the travel of the load"),
         );
     }
 }
@@ -398,14 +425,15 @@ impl Builder<'_> {
         found
     }
 
-    /// The network with its drive and the direction of the drive; `None` after errors.
-    fn network(&mut self) -> Option<(Network, [f64; 2])> {
+    /// The network with its loads; `None` after errors.
+    fn network(&mut self) -> Option<(Network, Loads)> {
         let spec = self.spec;
         self.check_materials();
         let drawn: Vec<Option<Drawn<'_>>> = spec.design.beams.iter().map(|b| self.drawn(b)).collect();
         let supports: Vec<Option<Support>> = spec.design.nodes.iter().map(|n| self.support(n)).collect();
-        let load_node = spec.load.node.as_ref().and_then(|n| self.node(&n.value, n.span));
-        let direction = spec.load.direction.as_ref().map(|d| unit(d.value))?;
+        let nodes: Vec<Option<usize>> =
+            spec.load.iter().map(|load| load.value.node.as_ref().and_then(|n| self.node(&n.value, n.span))).collect();
+        let loads = loads::resolve(spec, &nodes, self.place, self.diagnostics);
         let drawn: Vec<Drawn<'_>> = drawn.into_iter().collect::<Option<_>>()?;
         let positions = self.positions(&drawn)?;
         let beams: Vec<Option<Beam>> = drawn.iter().map(|d| self.beam(d, &positions)).collect();
@@ -415,7 +443,8 @@ impl Builder<'_> {
             .zip(supports)
             .map(|(at, support)| Some(Node { position_m: *at, support: support? }))
             .collect::<Option<Vec<_>>>()?;
-        Some((Network::new(nodes, beams, Drive::Displacement { node: load_node?, direction }), direction))
+        let loads = loads?;
+        Some((Network { before: loads.before.clone(), ..Network::new(nodes, beams, loads.drive) }, loads))
     }
 
     fn drawn<'b>(&mut self, member: &'b Member<spec::Beam>) -> Option<Drawn<'b>> {
@@ -532,6 +561,7 @@ impl Builder<'_> {
         match kind {
             Some("clamped") => Some(Support::Clamped),
             Some("pinned") => Some(Support::Pinned),
+            Some("parallel") => Some(Support::Parallel),
             Some(_) => {
                 let Some(direction) = &node.direction else {
                     let span = node.support.as_ref().map_or(member.name.span, |s| s.span);
@@ -616,7 +646,12 @@ impl Builder<'_> {
                 }
             },
         };
-        let thickness_m = si(beam.thickness.as_ref()).or(si(self.spec.design.thickness.as_ref()));
+        let own = beam.thickness.as_ref().map(|t| &t.value);
+        let thickness_m = own.and_then(Along::first).map(|q| q.si).or(si(self.spec.design.thickness.as_ref()));
+        let profile = match own {
+            Some(Along::Places(places)) => places.iter().map(|(u, thickness)| [*u, thickness.si]).collect(),
+            _ => Vec::new(),
+        };
         if thickness_m.is_none() && !self.diagnostics.has_errors() {
             self.error(
                 Diagnostic::error("E0302", member.name.span, format!("beam `{name}` has no thickness"))
@@ -636,7 +671,7 @@ impl Builder<'_> {
             depth_m: si(self.spec.design.depth.as_ref())?,
             poisson: si(material.poisson_ratio.as_ref()),
         };
-        Some(Beam { start_joint, end_joint, ..Beam::new(drawn.start, drawn.end, shape, section) })
+        Some(Beam { start_joint, end_joint, profile, ..Beam::new(drawn.start, drawn.end, shape, section) })
     }
 
     /// The shape through points; a fault is reported at the point.
@@ -664,7 +699,7 @@ impl Builder<'_> {
     }
 
     /// `x = 0` or `y = 2 mm`; the load must move along the line.
-    fn mirror(&mut self, direction: [f64; 2]) -> Option<Mirror> {
+    fn mirror(&mut self, network: &Network, loads: &Loads) -> Option<Mirror> {
         let text = self.spec.layout.mirror.as_ref()?;
         let parsed = text.value.split_once('=').and_then(|(axis, value)| {
             let value = value.trim();
@@ -683,25 +718,14 @@ impl Builder<'_> {
             );
             return None;
         };
-        let across = match mirror {
-            Mirror::X(_) => direction[0],
-            Mirror::Y(_) => direction[1],
-        };
-        if across.abs() > 1e-9 {
-            let load = self.spec.load.direction.as_ref().map_or(text.span, |d| d.span);
-            self.error(
-                Diagnostic::error("E0508", load, "the load does not move along the mirror line")
-                    .label("this direction")
-                    .related(text.span, "mirrored here")
-                    .help("both halves move alike only along the line; change the direction, or draw the whole mechanism without `layout.mirror`"),
-            );
-        }
+        let on_line = |node: usize| network.nodes.get(node).is_some_and(|n| mirror.holds(network, n.position_m));
+        loads::check_mirror(self.spec, loads, (mirror, text.span), on_line, self.diagnostics);
         Some(mirror)
     }
 }
 
 /// Unit vector; the reader has made sure that it has a length.
-fn unit([x, y]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn unit([x, y]: [f64; 2]) -> [f64; 2] {
     let length = forcewright_base::maths::hypot(x, y);
     [x / length, y / length]
 }

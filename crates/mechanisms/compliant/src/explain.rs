@@ -60,7 +60,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "the network can move freely",
         "A part of the network could move as a rigid body without any beam bending. Clamp or pin one of its nodes, or join it to the rest.",
     ),
-    code("E0506", "the load cannot move its node", "The support of the loaded node does not allow a motion along `load.direction`."),
+    code(
+        "E0506",
+        "the load cannot move its node",
+        "The support of a loaded node does not allow a motion along the `direction` of the load, or holds its angle where a load would turn it.",
+    ),
     code("E0507", "not a mirror line", "Mirror lines are parallel to an axis: `x = 0`, `y = 2 mm`."),
     code("E0508", "the load leaves the mirror line", "The two halves move alike only if the load moves along the mirror line."),
     code("E0509", "the network cannot be solved as described", "The engine refuses a value or a combination; the message says which."),
@@ -68,6 +72,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "E0511",
         "something on the mirror line",
         "A node on the mirror line can neither leave it nor turn, because the mirrored half pulls the other way. The half that is solved must be held accordingly: a slider along the line with fixed rotation, or clamped. A beam on the line would be counted twice.",
+    ),
+    code(
+        "E0512",
+        "nothing of a beam is left to bend",
+        "With `model.joints = \"overlap\"` a beam is rigid as far as it lies inside the other beams at its nodes. Of this one less than a twentieth is left: the beams are too thick for their length, or leave a node nearly side by side, where the blocks that they form grow long.",
+    ),
+    code(
+        "E0513",
+        "a node is moved twice the same way",
+        "Loads are carried out in order, and each is held at its end: what has been moved stays there. A second load cannot move the same node along the same direction, nor at another angle than a right one, nor turn it twice. Forces and moments may act on one node as often as they like.",
     ),
     code("E0510", "a loose node", "No beam ends at this node."),
     code(
@@ -104,6 +118,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0508",
         "beams cross",
         "The axes of two beams, of a beam with itself, or of a beam with the mirror line (and so with the other half) intersect. In a plane part that is contact, which is not modelled: the curve holds only up to the named displacement. Only axes are tested; beams of finite thickness touch a little earlier.",
+    ),
+    code(
+        "W0510",
+        "the whole would sway without a guide",
+        "A mirrored mechanism is solved as one half, which moves symmetrically. Free to move sideways and to turn, with the displacement along the load held, the block between the halves stays in the middle only while its stiffness against both is positive: k_xx of the sideways motion, k_θθ of the rotation, and k_xx·k_θθ − k_xθ². From the named displacement on it is not: a part whose block runs in a guide follows the curve, one without a guide tips over to a side.\n\nThe metric `lateral_stiffness_min` is twice the half's k_xx − k_xθ²/k_θθ. A block that joins two load nodes beside the line is taken as rigid and as pushed at their height.",
     ),
     code(
         "W0509",

@@ -125,6 +125,7 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
     let mut markers = Vec::new();
     if let (Some(c), Some(end)) = (measured.get("range_start"), measured.get("force_at_end")) {
         let fraction = format_number(100.0 * RANGE_FRACTION, 3);
+        let d = points.last().map_or(f64::NAN, |p| p.displacement);
         markers.push(Marker {
             x: c,
             y: RANGE_FRACTION * end,
@@ -132,10 +133,10 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
             note: format!("c = {}: F last rises through {fraction} % of its end value", format_si(c, length, 4)),
         });
         markers.push(Marker {
-            x: design.travel_m,
+            x: d,
             y: end,
             label: "d".to_owned(),
-            note: format!("d = {}: end of the travel, F = {}", format_si(design.travel_m, length, 4), format_si(end, force, 4)),
+            note: format!("d = {}: end of the travel, F = {}", format_si(d, length, 4), format_si(end, force, 4)),
         });
     }
     if let (Some(x), Some(f)) = (measured.get("force_local_max_at"), measured.get("force_local_max")) {

@@ -47,6 +47,11 @@ impl ForceCurve {
         Self { x: displacement_m, f: force_n, k: stiffness_n_per_m }
     }
 
+    /// The first displacement, m.
+    pub fn start(&self) -> f64 {
+        self.x.first().copied().unwrap_or(0.0)
+    }
+
     /// The last displacement, m.
     pub fn end(&self) -> f64 {
         self.x.last().copied().unwrap_or(0.0)
@@ -240,7 +245,7 @@ impl ForceCurve {
     /// The window of a given length that deviates least: from a level, or (level free) from the middle of its own extent; and that
     /// deviation, relative.
     pub fn best_window(&self, length: f64, nominal: Option<f64>) -> Option<(Interval, f64)> {
-        if length > self.end() {
+        if length > self.end() - self.start() {
             return None;
         }
         let critical = self.critical();

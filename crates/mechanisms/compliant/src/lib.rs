@@ -10,6 +10,7 @@ mod design;
 mod explain;
 mod figures;
 mod force_curve;
+mod loads;
 mod material;
 mod metrics;
 mod reproduce;
@@ -18,19 +19,23 @@ mod rules;
 mod scene;
 mod spec;
 mod statements;
+mod status;
+mod sway;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress, Reproduction};
 use forcewright_model::{Counter, Outcome, Status, StatusKind};
 
-pub use analysis::{Behaviour, LargestStress, Measured, measure};
+pub use analysis::{Behaviour, LargestStress, Measured, Snap, measure};
 pub use crossing::{Crossing, first_crossing};
 pub use design::{Design, DisplayUnits, Envelope, Mirror, Requirements, StressLimit};
 pub use force_curve::{Extrema, ForceCurve, Interval};
+pub use loads::Control;
 pub use material::Material;
 pub use metrics::{METRICS, MetricInfo};
 pub use room::{Margin, Nearest, margin, nearest};
 pub use spec::Spec;
+pub use sway::Sway;
 
 /// The family.
 pub struct Compliant;
@@ -57,7 +62,7 @@ impl Mechanism for Compliant {
         let outcome = Outcome {
             mechanism: Self::ID,
             title: design.title.clone(),
-            status: analysis::status(design, &behaviour),
+            status: status::status(design, &behaviour),
             error_estimate: behaviour.path.error_estimate.map(|e| e.max(behaviour.interpolation_error)),
             metrics: analysis::metrics(design, &measured),
             checks: checks::checks(design, &behaviour, &measured),
@@ -75,7 +80,7 @@ impl Mechanism for Compliant {
             warnings: statements::warnings(design, &behaviour, &measured),
         };
         let figures = figures::figures(design, &behaviour, &measured);
-        Analysis { outcome, figures, model: statements::model(design), limits: statements::limits() }
+        Analysis { outcome, figures, model: statements::model(design), limits: statements::limits(design) }
     }
 
     fn explanations() -> &'static [Explanation] {
@@ -101,5 +106,5 @@ fn refused(design: &Design, message: String) -> Analysis {
         sources: statements::sources(design),
         warnings: Vec::new(),
     };
-    Analysis { outcome, figures: Vec::new(), model: statements::model(design), limits: statements::limits() }
+    Analysis { outcome, figures: Vec::new(), model: statements::model(design), limits: statements::limits(design) }
 }

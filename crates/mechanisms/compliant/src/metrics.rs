@@ -50,6 +50,12 @@ pub const METRICS: &[MetricInfo] = &[
         "Smallest distance between beam surfaces over the travel, outside the joints that they share.",
     ),
     metric(
+        "lateral_stiffness_min",
+        Dimension::Stiffness,
+        false,
+        "Least force per sideways motion of the load node, free to turn and without a guide, over the travel; of mirrored layouts.",
+    ),
+    metric(
         "envelope_margin",
         Dimension::Length,
         false,

@@ -1,7 +1,7 @@
 //! Rules that a drawn network keeps, each fault reported at the place of its cause.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
-use forcewright_beam::{Network, NetworkError, Rotation, Support};
+use forcewright_beam::{Joints, Network, NetworkError, Rotation, Support};
 
 use crate::design::Mirror;
 use crate::spec::Spec;
@@ -40,11 +40,14 @@ pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnos
                 .help("clamp or pin a node of it, or join it to the rest")
         }
         NetworkError::DriveBlocked { node } => {
-            let span = spec.load.node.as_ref().map_or(place, |n| n.span);
-            Diagnostic::error("E0506", span, format!("node `{}` cannot move in the direction of the load", node_name(node)))
+            let (span, turns) = blocked_load(network, spec).unwrap_or((place, false));
+            let how = if turns { "cannot turn" } else { "cannot move in the direction of the load" };
+            Diagnostic::error("E0506", span, format!("node `{}` {how}", node_name(node)))
                 .label("held by its support")
                 .help("choose a direction that its support allows, or another node")
         }
+        NetworkError::DrivenTwice { node, stage } => moved_twice(network, spec, (node, node_name(node)), stage, place),
+        NetworkError::TooManyStages { count } => too_many_loads(spec, count, place),
         NetworkError::TooLarge { count } => {
             let list = if spec.design.beams.len() > Network::LARGEST {
                 spec.design.beams.last().map(|b| b.name.span)
@@ -70,14 +73,58 @@ pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnos
     diagnostics.push(diagnostic);
 }
 
+/// Two loads that move one node the same way.
+fn moved_twice(network: &Network, spec: &Spec, (node, name): (usize, &str), stage: usize, place: Span) -> Diagnostic {
+    let of = |index: usize| spec.load.get(index).map_or(place, |l| l.value.node.as_ref().map_or(l.name.span, |n| n.span));
+    let first = network.before.iter().position(|s| s.drive.is_kinematic() && s.drive.node() == node).unwrap_or(0);
+    Diagnostic::error("E0513", of(stage), format!("a load before has moved node `{name}` this way already, and holds it"))
+        .label("moved twice")
+        .related(of(first), "moved and held here")
+        .help("let one of the two be a force or a moment, or move the node at right angles; to start further on, lengthen one travel")
+}
+
+fn too_many_loads(spec: &Spec, count: usize, place: Span) -> Diagnostic {
+    let span = spec.load.get(Network::MOST_STAGES).map_or(place, |l| l.name.span);
+    let message = format!("{count} loads before the last one, at most {} are accepted", Network::MOST_STAGES);
+    Diagnostic::error("E0311", span, message).label("too many").help("join some of them")
+}
+
+/// The place of the first load that its node does not allow, and whether it is one that turns.
+fn blocked_load(network: &Network, spec: &Spec) -> Option<(Span, bool)> {
+    let drives = network.before.iter().map(|s| s.drive).chain([network.drive]);
+    let blocked = |drive| {
+        let alone = Network { before: Vec::new(), drive, ..network.clone() };
+        matches!(alone.check(), Err(NetworkError::DriveBlocked { .. }))
+    };
+    let (_, load) = drives.zip(&spec.load).find(|(drive, _)| blocked(*drive))?;
+    let turns = load.value.moment.is_some() || load.value.rotation.is_some();
+    Some((load.value.node.as_ref().map_or(load.name.span, |n| n.span), turns))
+}
+
+/// Joints leave every beam something to bend.
+pub(crate) fn check_joints(network: &Network, joints: Joints, spec: &Spec, place: Span, diagnostics: &mut Diagnostics) {
+    let Err(NetworkError::AllRigid { beam, rigid_m }) = network.check_joints(joints) else { return };
+    let (span, name) = spec.design.beams.get(beam).map_or((place, "?"), |b| (b.name.span, b.name.value.as_str()));
+    let length_m = network.beams.get(beam).map_or(f64::NAN, |b| b.shape.length_m());
+    diagnostics.push(
+        Diagnostic::error(
+            "E0512",
+            span,
+            format!(
+                "beam `{name}` lies inside its joints over {:.3} mm of its {:.3} mm: nothing is left to bend",
+                1e3 * rigid_m,
+                1e3 * length_m
+            ),
+        )
+        .label("this beam")
+        .help("lengthen or thin it, spread the beams that meet there, or let beams meet in points: `model.joints = \"point\"`"),
+    );
+}
+
 /// On the mirror line, symmetry holds a node's rotation and its motion across; the network must say so, or one half alone would move
 /// otherwise than the two together. A beam on the line would be counted twice.
 pub(crate) fn check_mirror(network: &Network, mirror: Mirror, spec: &Spec, diagnostics: &mut Diagnostics) {
-    let size = network.beams.iter().map(|b| b.shape.length_m()).fold(0.0, f64::max);
-    let off = |[x, y]: [f64; 2]| match mirror {
-        Mirror::X(at) => (x - at).abs() > 1e-9 * size,
-        Mirror::Y(at) => (y - at).abs() > 1e-9 * size,
-    };
+    let off = |point: [f64; 2]| !mirror.holds(network, point);
     for (node, drawn) in network.nodes.iter().zip(&spec.design.nodes) {
         let guided = match node.support {
             Support::Clamped => true,
@@ -124,7 +171,7 @@ pub(crate) fn check_mirror(network: &Network, mirror: Mirror, spec: &Spec, diagn
 pub(crate) fn check_held(network: &Network, spec: &Spec, diagnostics: &mut Diagnostics) {
     let driven = network.drive.node();
     let held = network.nodes.iter().enumerate().any(|(i, n)| i != driven && n.support != Support::Free);
-    if !held && let Some(node) = &spec.load.node {
+    if !held && let Some(node) = spec.load.last().and_then(|l| l.value.node.as_ref()) {
         diagnostics.push(
             Diagnostic::error("E0505", node.span, "nothing but the moved node holds the mechanism")
                 .label("it would follow this node as a whole")

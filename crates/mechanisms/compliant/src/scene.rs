@@ -2,7 +2,7 @@
 
 use forcewright_base::maths;
 use forcewright_base::units::format_si;
-use forcewright_beam::{Point, Rotation, Support};
+use forcewright_beam::{Beam, BeamState, Point, Rotation, Support};
 use forcewright_model::{ColourScale, Item, Role, Scene, SupportKind};
 
 use crate::analysis::{Behaviour, Measured};
@@ -69,6 +69,62 @@ fn size_m(design: &Design) -> f64 {
     (high[0] - low[0]).max(high[1] - low[1])
 }
 
+/// A part of a beam that is drawn as one line.
+struct Piece {
+    from: f64,
+    to: f64,
+    chords: usize,
+    width_m: f64,
+    rigid: bool,
+}
+
+impl Piece {
+    fn place(&self, i: usize) -> f64 {
+        self.from + (self.to - self.from) * i as f64 / self.chords as f64
+    }
+}
+
+/// How a beam is drawn: outlined as one line; under load its rigid ends apart, and in short pieces where its thickness varies.
+fn pieces(beam: &Beam, state: Option<&BeamState>) -> Vec<Piece> {
+    let chords = SAMPLES - 1;
+    let Some(state) = state else {
+        return vec![Piece { from: 0.0, to: 1.0, chords, width_m: beam.thickness_at(0.5), rigid: false }];
+    };
+    let [from, to] = state.flexible();
+    let width_m = |u: f64| beam.thickness_at(u);
+    let mut all = Vec::new();
+    if from > 0.0 {
+        all.push(Piece { from: 0.0, to: from, chords: 1, width_m: width_m(0.5 * from), rigid: true });
+    }
+    if to < 1.0 {
+        all.push(Piece { from: to, to: 1.0, chords: 1, width_m: width_m(0.5 * (to + 1.0)), rigid: true });
+    }
+    if beam.profile.is_empty() {
+        all.push(Piece { from, to, chords, width_m: width_m(0.5), rigid: false });
+        return all;
+    }
+    let cut = |i: usize| from + (to - from) * i as f64 / chords as f64;
+    all.extend((0..chords).map(|i| Piece {
+        from: cut(i),
+        to: cut(i + 1),
+        chords: 1,
+        width_m: width_m(f64::midpoint(cut(i), cut(i + 1))),
+        rigid: false,
+    }));
+    all
+}
+
+/// A point of the axis, at rest or under load.
+fn axis_point(state: Option<&BeamState>, beam: &Beam, start: [f64; 2], u: f64) -> [f64; 2] {
+    state.map_or_else(
+        || {
+            let p = beam.shape.point_m(u);
+            [start[0] + p[0], start[1] + p[1]]
+        },
+        |state| state.shape_m(u),
+    )
+}
+
 struct Artist<'a> {
     design: &'a Design,
     size_m: f64,
@@ -78,34 +134,26 @@ impl Artist<'_> {
     fn beams(&self, items: &mut Vec<Item>, state: Option<&Point>) {
         for (index, beam) in self.design.network.beams.iter().enumerate() {
             let start = self.design.network.nodes[beam.start].position_m;
-            let place = |i: usize| i as f64 / (SAMPLES - 1) as f64;
             let state = state.map(|s| &s.beams[index]);
-            let points: Vec<[f64; 2]> = (0..SAMPLES)
-                .map(|i| {
-                    if let Some(state) = state {
-                        state.shape_m(place(i))
-                    } else {
-                        let p = beam.shape.point_m(place(i));
-                        [start[0] + p[0], start[1] + p[1]]
-                    }
-                })
-                .collect();
-            let values = state.map(|state| {
-                (0..SAMPLES)
-                    .map(|i| {
-                        let [left, right] = state.stress_pa(place(i));
-                        left.abs().max(right.abs())
-                    })
-                    .collect::<Vec<_>>()
-            });
-            let width_m = beam.section.thickness_m;
             let (role, copy) =
                 if state.is_some() { (Role::Deformed, Role::DeformedCopy) } else { (Role::Undeformed, Role::UndeformedCopy) };
-            if let Some(mirror) = self.design.mirror {
-                let points = points.iter().map(|p| mirror.image(*p)).collect();
-                items.push(Item::Line { points, width_m, role: copy, values: values.clone() });
+            for piece in pieces(beam, state) {
+                let at = |i: usize| axis_point(state, beam, start, piece.place(i));
+                let line: Vec<[f64; 2]> = (0..=piece.chords).map(at).collect();
+                let values = state.filter(|_| !piece.rigid).map(|state| {
+                    let stress = |i: usize| {
+                        let [left, right] = state.stress_pa(piece.place(i));
+                        left.abs().max(right.abs())
+                    };
+                    (0..=piece.chords).map(stress).collect::<Vec<_>>()
+                });
+                let width_m = piece.width_m;
+                if let Some(mirror) = self.design.mirror {
+                    let points = line.iter().map(|p| mirror.image(*p)).collect();
+                    items.push(Item::Line { points, width_m, role: copy, values: values.clone() });
+                }
+                items.push(Item::Line { points: line, width_m, role, values });
             }
-            items.push(Item::Line { points, width_m, role, values });
         }
     }
 

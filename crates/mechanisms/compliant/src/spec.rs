@@ -1,8 +1,8 @@
 //! The project file of a compliant mechanism as it is typed: every parameter is described here, once.
 
 use forcewright_base::units::{Dimension, Quantity};
-use forcewright_beam::Shape;
-use forcewright_contract::describe::{Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
+use forcewright_beam::{Network, Shape};
+use forcewright_contract::describe::{Along, Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
 
 use crate::metrics::METRICS;
@@ -22,8 +22,8 @@ pub struct Spec {
     pub(crate) design: Section<Design>,
     /// `[layout]`
     pub(crate) layout: Section<Layout>,
-    /// `[load]`
-    pub(crate) load: Section<Load>,
+    /// `[load]`, or `[[load]]` in order
+    pub(crate) load: Vec<Member<Load>>,
     /// `[model]`
     pub(crate) model: Section<Model>,
 }
@@ -140,7 +140,7 @@ pub(crate) struct Beam {
     pub through: Slot<Vec<Located<[Quantity; 2]>>>,
     pub angle: Slot<Vec<f64>>,
     pub length: Slot<Quantity>,
-    pub thickness: Slot<Quantity>,
+    pub thickness: Slot<Along>,
     pub material: Slot<String>,
     pub hinged: Slot<Vec<Located<String>>>,
 }
@@ -157,6 +157,9 @@ pub(crate) struct Load {
     pub node: Slot<String>,
     pub direction: Slot<[f64; 2]>,
     pub travel: Slot<Quantity>,
+    pub force: Slot<Quantity>,
+    pub moment: Slot<Quantity>,
+    pub rotation: Slot<Quantity>,
 }
 
 /// Which equations are solved, and how well.
@@ -172,6 +175,7 @@ pub(crate) const SUPPORTS: &[Word] = &[
     Word { word: "clamped", doc: "position and rotation fixed" },
     Word { word: "pinned", doc: "position fixed, free to rotate" },
     Word { word: "slider", doc: "moves along `direction`" },
+    Word { word: "parallel", doc: "moves in any direction, keeps its angle" },
 ];
 /// Rotation of a slider.
 pub(crate) const ROTATIONS: &[Word] = &[Word { word: "fixed", doc: "keeps its angle" }, Word { word: "free", doc: "turns freely" }];
@@ -198,6 +202,8 @@ pub(crate) const METHODS: &[Word] = &[
 const LARGEST_M: f64 = 10.0;
 /// A hundredth of a micrometre: below it no beam is made and no travel is meant.
 const SMALLEST_M: f64 = 1e-8;
+/// A nanonewton.
+const SMALLEST_N: f64 = 1e-9;
 
 const STUDY: &str = "it belongs to a study that this version does not have; `solve` does not need it";
 const RESERVED_SECTIONS: &[Reserved] = &[
@@ -223,11 +229,6 @@ const RESERVED_LAYOUT: &[Reserved] = &[
     Reserved { key: "circular", instead: "draw every copy, or use `mirror`", ignored: false },
     Reserved { key: "series", instead: "layers in series add their travels at equal force", ignored: false },
 ];
-const RESERVED_LOAD: &[Reserved] = &[
-    Reserved { key: "force", instead: "prescribe `travel`; the force is the result", ignored: false },
-    Reserved { key: "moment", instead: "prescribe `travel`", ignored: false },
-    Reserved { key: "rotation", instead: "prescribe `travel`", ignored: false },
-];
 
 impl Describe for Spec {
     fn describe(&mut self, v: &mut dyn Visitor) {
@@ -237,7 +238,15 @@ impl Describe for Spec {
         self.process.describe(v, &Param::new("process", "How it is made. Recorded; not used by the force analysis."));
         self.design.describe(v, &Param::new("design", "The flexure network.").required());
         self.layout.describe(v, &Param::new("layout", "Copies of the drawn network; force, energy and pictures follow."));
-        self.load.describe(v, &Param::new("load", "What happens to it.").required());
+        v.members(
+            &Param::new(
+                "load",
+                "What happens to it: one load, or several in order. The last one is the path; the others are held at their ends.",
+            )
+            .required(),
+            Form::Stages,
+            &mut self.load,
+        );
         self.model.describe(v, &Param::new("model", "Which equations are solved, and how well."));
         v.reserved(RESERVED_SECTIONS);
     }
@@ -410,10 +419,9 @@ impl Describe for Beam {
             &Param::new("length", "Arc length, with `angle`.").of(Dimension::Length).within(SMALLEST_M, LARGEST_M),
             &mut self.length,
         );
-        v.quantity(
-            &Param::new("thickness", "Its own in-plane thickness w.").of(Dimension::Length).within(SMALLEST_M, 1.0),
-            &mut self.thickness,
-        );
+        let own =
+            Param::new("thickness", "Its own in-plane thickness w, the same all along or at places u from 0 to 1, linear between them.");
+        v.along(&own.of(Dimension::Length).within(SMALLEST_M, 1.0), Network::MOST_PLACES, &mut self.thickness);
         v.text(&Param::new("material", "Its own material, by its name in `[material]`."), &mut self.material);
         v.names(&Param::new("hinged", "Ends, by their nodes, that turn freely."), 0, 2, &mut self.hinged);
     }
@@ -428,16 +436,35 @@ impl Describe for Layout {
 
 impl Describe for Load {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        v.text(&Param::new("node", "The node that is moved.").required(), &mut self.node);
+        v.text(&Param::new("node", "The node that is moved or loaded.").required(), &mut self.node);
         v.direction(
-            &Param::new("direction", "Direction of the displacement Δ and of the force F on the mechanism.").required(),
+            &Param::new("direction", "Direction of the displacement Δ and of the force F on the mechanism; with `travel` and `force`."),
             &mut self.direction,
         );
         v.quantity(
-            &Param::new("travel", "Largest displacement d.").of(Dimension::Length).within(SMALLEST_M, LARGEST_M).required(),
+            &Param::new("travel", "Largest displacement d, from where the load before left the node.")
+                .of(Dimension::Length)
+                .within(SMALLEST_M, LARGEST_M),
             &mut self.travel,
         );
-        v.reserved(RESERVED_LOAD);
+        v.quantity(
+            &Param::new("force", "Largest force, of constant direction, on the whole layout: of two halves each takes half.")
+                .of(Dimension::Force)
+                .within(SMALLEST_N, 1e9),
+            &mut self.force,
+        );
+        v.quantity(
+            &Param::new("moment", "Moment, counter-clockwise, before the last load; of two halves each takes half, the other way round.")
+                .of(Dimension::Torque)
+                .within(-1e9, 1e9),
+            &mut self.moment,
+        );
+        v.quantity(
+            &Param::new("rotation", "Rotation, counter-clockwise, before the last load; the mirrored half turns the other way.")
+                .of(Dimension::Angle)
+                .within(-50.0, 50.0),
+            &mut self.rotation,
+        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a report says in words: model, limits, sources, warnings.
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
-use forcewright_beam::{Beam, Theory};
+use forcewright_beam::{Beam, Drive, Joints, Theory};
 use forcewright_model::{Citation, Statement, Warning};
 
 use crate::analysis::{Behaviour, Measured};
@@ -36,7 +36,8 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
     };
     vec![
         beams,
-        statement("Network", format!("Beams meet at points; rigid joints keep the angles between beams. {halves}")),
+        statement("Network", format!("{} {halves}", joints(design))),
+        statement("Loads", loads(design)),
         statement(
             "Solution",
             "Rotations in integrated Legendre polynomials, forces as multipliers, Newton's method. The path starts at rest and is followed in displacement with adaptive steps; it never starts from another design's solution. Polynomial degree grows until forces and stresses of two degrees agree.",
@@ -47,6 +48,50 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
         ),
         statement("Material data", material_data(design)),
     ]
+}
+
+/// How beams meet.
+fn joints(design: &Design) -> &'static str {
+    match design.joints {
+        Joints::Point => "Beams meet at points; rigid joints keep the angles between beams.",
+        Joints::Overlap => {
+            "Where beams of finite thickness meet in a rigid joint, each is rigid as far as it lies inside another one, up to the corner of their inner faces; rigid joints keep the angles between beams."
+        }
+    }
+}
+
+/// What happens, in order.
+fn loads(design: &Design) -> String {
+    let copies = design.copies();
+    let units = &design.units;
+    let name = |node: usize| design.node_names.get(node).map_or("?", String::as_str);
+    let toward = |d: [f64; 2]| format!("[{}, {}]", format_number(d[0], 4), format_number(d[1], 4));
+    let one = |drive: &Drive, to: f64| match *drive {
+        Drive::Displacement { node, direction } => {
+            format!("node {} is moved by {} along {}", name(node), format_si(to, &units.displacement, 4), toward(direction))
+        }
+        Drive::Force { node, direction } => {
+            format!("node {} is loaded by {} along {}", name(node), format_si(copies * to, &units.force, 4), toward(direction))
+        }
+        Drive::Rotation { node } => {
+            let degree = Unit::parse("deg").unwrap_or_else(|_| Unit::si(Dimension::Angle));
+            format!("node {} is turned by {}", name(node), format_si(to, &degree, 4))
+        }
+        Drive::Moment { node } => {
+            let unit = Unit::parse("N*mm").unwrap_or_else(|_| Unit::si(Dimension::Torque));
+            format!("node {} is loaded by a moment of {}", name(node), format_si(copies * to, &unit, 4))
+        }
+    };
+    let last = one(&design.network.drive, design.load_end);
+    let before: Vec<String> = design.network.before.iter().map(|s| one(&s.drive, s.to)).collect();
+    match before.len() {
+        0 => format!("From rest {last}."),
+        1 => format!("After 1 load stage, held at its end ({}), {last}. Curves and metrics are those of this last load.", before.join("")),
+        n => format!(
+            "After {n} load stages, each held at its end ({}), {last}. Curves and metrics are those of this last load.",
+            before.join("; ")
+        ),
+    }
 }
 
 /// Where the data of each material come from.
@@ -64,12 +109,9 @@ fn material_data(design: &Design) -> String {
 }
 
 /// What is not modelled.
-pub(crate) fn limits() -> Vec<Statement> {
+pub(crate) fn limits(design: &Design) -> Vec<Statement> {
     vec![
-        statement(
-            "Joints",
-            "The extra stiffness where beams of finite thickness overlap, and of fillets, is not modelled. For the paper's prototype both together explain up to about 0.75 N of the 0.9 N by which the bench lies above the beam model of 6 N.",
-        ),
+        statement("Joints", joint_limits(design)),
         statement(
             "Material",
             "Linear elastic. No plasticity, creep, relaxation, temperature or fatigue; plastics lose force under lasting load.",
@@ -84,8 +126,26 @@ pub(crate) fn limits() -> Vec<Statement> {
             "Slenderness",
             "Beam theory holds for beams about ten times longer than thick; the stress of strongly curved beams is that of straight ones.",
         ),
-        statement("Symmetry", "A mirrored mechanism is assumed to move symmetrically; a sideways mode of the whole is not looked for."),
+        statement(
+            "Symmetry",
+            if crate::sway::joins_halves(design) {
+                "A mirrored mechanism is assumed to move symmetrically. Whether the whole would sway sideways without a guide is looked for (`lateral_stiffness_min`, W0510), at every fourth station; other modes that break the symmetry are not."
+            } else {
+                "A mirrored mechanism is assumed to move symmetrically; modes that break the symmetry are not looked for."
+            },
+        ),
     ]
+}
+
+fn joint_limits(design: &Design) -> &'static str {
+    match design.joints {
+        Joints::Point => {
+            "The extra stiffness where beams of finite thickness overlap, and of fillets, is not modelled; `model.joints = \"overlap\"` adds the former. For the paper's prototype both together explain up to about 0.75 N of the 0.9 N by which the bench lies above the beam model of 6 N."
+        }
+        Joints::Overlap => {
+            "Fillets, which lengthen the rigid zones, are not modelled, nor are zones between a beam and the ground, a block or the mirrored half."
+        }
+    }
 }
 
 /// Works used.
@@ -116,7 +176,13 @@ pub(crate) fn sources(design: &Design) -> Vec<Citation> {
 
 /// Thickness over radius of a beam as made, at a place.
 fn curvature_ratio(beam: &Beam, u: f64) -> f64 {
-    beam.section.thickness_m * beam.shape.slope_at(u).abs() / beam.shape.length_m()
+    beam.thickness_at(u) * beam.shape.slope_at(u).abs() / beam.shape.length_m()
+}
+
+/// Length over thickness, where that varies over its mean.
+fn slenderness(beam: &Beam) -> f64 {
+    let mean_m: f64 = beam.profile.windows(2).map(|p| (p[1][0] - p[0][0]) * f64::midpoint(p[0][1], p[1][1])).sum();
+    beam.shape.length_m() / if beam.profile.is_empty() { beam.section.thickness_m } else { mean_m }
 }
 
 /// One warning about all strongly curved beams, with what it means for the largest stress.
@@ -153,12 +219,37 @@ fn curved_beams(design: &Design, measured: &Measured) -> Option<Warning> {
     (!ratios.is_empty()).then_some(Warning { code: "W0502", message })
 }
 
+/// Where a real part leaves the computed path.
+fn leaving(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
+    let mut all = Vec::new();
+    let show = |x: f64| format_si(x, &design.units.displacement, 4);
+    if let Some(from) = behaviour.unstable_from_m {
+        all.push(Warning {
+            code: "W0506",
+            message: format!(
+                "from Δ = {} on the computed shape is unstable even with the displacement held: a real part leaves it, and the results hold only up to there",
+                show(from)
+            ),
+        });
+    }
+    if let Some(from) = behaviour.sway.and_then(|s| s.from_m) {
+        all.push(Warning {
+            code: "W0510",
+            message: format!(
+                "without a guide the block sways sideways from Δ = {} on: guided along the load it does what its curve says, free it leaves it",
+                show(from)
+            ),
+        });
+    }
+    all
+}
+
 /// Things to know about this result.
 pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Warning> {
     let mut all = Vec::new();
     let name = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
     for (index, beam) in design.network.beams.iter().enumerate() {
-        let slenderness = beam.shape.length_m() / beam.section.thickness_m;
+        let slenderness = slenderness(beam);
         if slenderness < SLENDER {
             all.push(Warning {
                 code: "W0501",
@@ -211,15 +302,7 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             ),
         });
     }
-    if let Some(from) = behaviour.unstable_from_m {
-        all.push(Warning {
-            code: "W0506",
-            message: format!(
-                "from Δ = {} on the computed shape is unstable even with the displacement held: a real part leaves it, and the results hold only up to there",
-                show(from)
-            ),
-        });
-    }
+    all.extend(leaving(design, behaviour));
     if behaviour.interpolation_error > 1e-6 {
         all.push(Warning {
             code: "W0505",

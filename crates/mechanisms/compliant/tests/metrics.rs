@@ -40,7 +40,7 @@ fn perturbed(seed: u64) -> (String, Vec<String>) {
 /// Exact points of the whole travel, evenly spaced.
 fn scan(solved: &Solved) -> Vec<Point> {
     let design = &solved.design;
-    let stations: Vec<f64> = (0..=PIECES).map(|i| design.travel_m * i as f64 / PIECES as f64).collect();
+    let stations: Vec<f64> = (0..=PIECES).map(|i| design.load_end * i as f64 / PIECES as f64).collect();
     let settings = Settings { theory: design.theory, accuracy: design.accuracy, ..Settings::default() };
     trace(&design.network, &stations, &settings, &mut |_| true).expect("a network that was checked").points
 }
@@ -72,13 +72,13 @@ fn as_long(
     forces: &[f64],
     rule: impl Fn(f64, f64) -> bool,
 ) {
-    let step = solved.design.travel_m / PIECES as f64;
+    let step = solved.design.load_end / PIECES as f64;
     let Some((first, last)) = scanned else {
         assert!(solved.measured.get(ratio).unwrap_or(0.0) <= 2.0 / PIECES as f64, "{ratio}");
         return;
     };
     let length = solved.get(end) - solved.get(start);
-    close(solved.get(ratio), length / solved.design.travel_m, 1e-15, ratio);
+    close(solved.get(ratio), length / solved.design.load_end, 1e-15, ratio);
     let found = (last - first) as f64 * step;
     assert!(length > found - 1e-9 * step && length < found + 2.0 * step, "{ratio}: {length}, the scan found {found}");
     // And it keeps the rule: every sample inside does, up to the interpolation between stations.
@@ -97,7 +97,7 @@ fn intervals(solved: &Solved, forces: &[f64], band: f64, nominal: f64) {
 
 /// c between the last two samples that the force rises through the level of the paper's rule.
 fn range(solved: &Solved, forces: &[f64]) {
-    let step = solved.design.travel_m / PIECES as f64;
+    let step = solved.design.load_end / PIECES as f64;
     let level = 0.95 * forces[PIECES];
     let last = (0..PIECES).rev().find(|i| forces[*i] < level && forces[i + 1] >= level);
     match (solved.measured.get("range_start"), last) {
@@ -108,7 +108,7 @@ fn range(solved: &Solved, forces: &[f64]) {
 }
 
 fn extrema(solved: &Solved, points: &[Point], forces: &[f64]) -> bool {
-    let step = solved.design.travel_m / PIECES as f64;
+    let step = solved.design.load_end / PIECES as f64;
     let top = (1..PIECES).find(|i| forces[*i] > forces[i - 1] && forces[*i] >= forces[i + 1]);
     let bottom = top.and_then(|top| (top + 1..PIECES).find(|i| forces[*i] < forces[i - 1] && forces[*i] <= forces[i + 1]));
     for (index, name, at, sign) in
@@ -139,7 +139,7 @@ fn stresses(solved: &Solved, points: &[Point]) {
     let first = stresses.iter().position(|s| *s >= allowed);
     assert_eq!(first.is_some(), solved.measured.get("travel_at_allowable_stress").is_some());
     let Some(first) = first else { return };
-    let (at, step) = (solved.get("travel_at_allowable_stress"), solved.design.travel_m / PIECES as f64);
+    let (at, step) = (solved.get("travel_at_allowable_stress"), solved.design.load_end / PIECES as f64);
     assert!(at > (first as f64 - 1.0) * step && at <= first as f64 * step * (1.0 + 1e-12), "{at}, sample {first}");
     common::near(
         solved.behaviour.path.at(at).expect("on the path").peak_stress().expect("beams").1.stress_pa,
@@ -151,7 +151,7 @@ fn stresses(solved: &Solved, points: &[Point]) {
 
 /// The window of COMP001 against every window of samples.
 fn window(text: &str, set: &[&str], solved: &Solved, forces: &[f64], nominal: Option<f64>, width: usize) {
-    let travel = solved.design.travel_m * width as f64 / PIECES as f64;
+    let travel = solved.design.load_end * width as f64 / PIECES as f64;
     let typed = format!("requirements.travel={travel:e} m");
     let outcome = outcome(text, &[set, &[typed.as_str()]].concat());
     let extents =

@@ -74,7 +74,7 @@ fn metrics_of_the_printed_shapes() {
     near(solved.get("force_at_end"), want.force("force_at_end"), 1e-12, "force");
     // Read off the interpolant between 129 stations.
     near(solved.get("range_start"), want.length("range_start"), 2e-9, "c");
-    let travel = solved.design.travel_m;
+    let travel = solved.design.load_end;
     close(solved.get("range_ratio"), (travel - want.length("range_start")) / travel, 2e-9, "range");
     // The independent solution finds places by comparing forces, to about half of its digits.
     near(solved.get("force_local_max"), want.force("local_max"), 1e-12, "local maximum");

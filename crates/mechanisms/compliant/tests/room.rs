@@ -16,7 +16,7 @@ fn the_least_over_the_travel_is_found() {
     let line = Reflection { point_m: [0.0, 0.0], direction: [0.0, 1.0] };
     for set in [&[][..], &["load.travel=20 mm"], &["design.nodes.n4.at=[\"14 mm\", \"27 mm\"]", "load.travel=17 mm"]] {
         let solved = solve(NODES, set);
-        let end = solved.design.travel_m;
+        let end = solved.design.load_end;
         let scan = (0..=200).map(|i| {
             let point = solved.behaviour.path.at(end * f64::from(i) / 200.0).unwrap();
             clearance(&solved.design.network, Some(&point), Some(line)).unwrap().distance_m

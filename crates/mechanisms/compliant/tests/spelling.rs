@@ -87,7 +87,7 @@ fn inches_are_exact() {
     let (a, b) = (design(&inches, &[]), design(&metric, &[]));
     // Typed in inches, a length is a product: it may differ from the decimal by one unit of the last place.
     let near = |a: f64, b: f64| (a / b - 1.0).abs() <= f64::EPSILON;
-    assert!(near(a.travel_m, b.travel_m) && near(a.network.nodes[0].position_m[0], b.network.nodes[0].position_m[0]));
+    assert!(near(a.load_end, b.load_end) && near(a.network.nodes[0].position_m[0], b.network.nodes[0].position_m[0]));
     let (a, b) = (bits(&a), bits(&b));
     for (a, b) in a.iter().zip(&b).filter(|(a, _)| a.0 == "force_at_end" || a.0 == "force") {
         let (a, b) = (f64::from_bits(a.1), f64::from_bits(b.1));

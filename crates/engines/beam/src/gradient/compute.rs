@@ -149,7 +149,7 @@ impl<'p> Gradients<'p> {
     /// [`GradientError`] if an output names what does not exist, the point is not of this path, or it is a limit point.
     pub fn at(&mut self, point: &Point, outputs: &[Output]) -> Result<Vec<Gradient>, GradientError> {
         let resolution = self.path.resolution_of(point).ok_or(GradientError::ForeignPoint)?;
-        outputs.iter().try_for_each(|output| self.check(output, point))?;
+        outputs.iter().try_for_each(|output| self.check(output))?;
         let elsewhere = !std::ptr::eq(resolution, self.stage.resolution);
         if elsewhere {
             std::mem::swap(&mut self.stage, &mut self.beyond);
@@ -172,11 +172,11 @@ impl<'p> Gradients<'p> {
         Ok(gradients)
     }
 
-    fn check(&self, output: &Output, point: &Point) -> Result<(), GradientError> {
+    fn check(&self, output: &Output) -> Result<(), GradientError> {
         let beams = self.model.spans.len();
         if let Output::Gap { first, second, .. } = *output {
             // Both are positions, and may be asked for where these may.
-            return [first, second].into_iter().try_for_each(|(beam, u)| self.check(&Output::Position { beam, u, axis: Axis::X }, point));
+            return [first, second].into_iter().try_for_each(|(beam, u)| self.check(&Output::Position { beam, u, axis: Axis::X }));
         }
         match *output {
             Output::Stress { beam, .. } | Output::PeakStress { beam: Some(beam) } | Output::Position { beam, .. } if beam >= beams => {

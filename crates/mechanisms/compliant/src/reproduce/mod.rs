@@ -26,6 +26,9 @@ const ROWS: &str = include_str!("../../../../../reference/lan2010.toml");
 const SHAPES: &str = include_str!("../../../../../reference/lan2010-shapes.toml");
 const NODES: &str = include_str!("../../../../../examples/compliant/lan-table3.toml");
 
+/// The support of n5 in the shapes.
+const GUIDED: &str = "support = \"slider\", direction = [0, 1]";
+
 /// A design from a project text with settings; the texts are embedded and tested, so a failure gives rows that cannot agree.
 fn design_of(text: &str, set: &[&str]) -> Option<Design> {
     let choices = Choices { variant: None, set: set.iter().map(|s| (*s).to_owned()).collect() };
@@ -73,6 +76,8 @@ struct Lan {
     scaled: Solved,
     turning: Solved,
     pinned: Solved,
+    /// n5 free to move sideways, its angle held.
+    sideways: Solved,
     /// Pairs of models beyond the paper's travel, w = 1 mm and 2 mm: inextensible is `longer` and `thick`.
     reissner: Solved,
     thick: Solved,
@@ -85,7 +90,7 @@ impl Lan {
     fn solve(progress: Progress<'_>) -> Option<Self> {
         let mut done = 0.0;
         let mut step = || {
-            done += 1.0 / 12.0;
+            done += 1.0 / 13.0;
             progress(done)
         };
         let end_effector = EndEffector::solve().filter(|_| step())?;
@@ -103,6 +108,7 @@ impl Lan {
             scaled: run(SHAPES, &scaled)?,
             turning: run(SHAPES, &["design.nodes.n5.rotation=free"])?,
             pinned: run(SHAPES, &["design.nodes.n1.support=pinned", "design.nodes.n2.support=pinned"])?,
+            sideways: run(&SHAPES.replace(GUIDED, "support = \"parallel\""), &[])?,
             reissner: run(SHAPES, &["model.beam=reissner", "load.travel=17 mm"])?,
             thick: run(SHAPES, &["design.thickness=2 mm", "load.travel=17 mm"])?,
             thick_reissner: run(SHAPES, &["design.thickness=2 mm", "model.beam=reissner", "load.travel=17 mm"])?,
@@ -114,7 +120,7 @@ impl Lan {
     /// The number of a row, in its unit.
     fn value(&self, id: &str) -> f64 {
         let (mm, mpa) = (1e3, 1e-6);
-        let thin_end = self.thin.design.travel_m.min(16.8e-3);
+        let thin_end = self.thin.design.load_end.min(16.8e-3);
         let thin_start = || {
             // c of the paper's travel of 16.8 mm, on the path that goes on a little.
             let curve = self.thin.behaviour.curve.as_ref()?;
@@ -125,7 +131,7 @@ impl Lan {
             "force_shapes" => self.shapes.get("force_at_end"),
             "force_nodes" => self.nodes.get("force_at_end"),
             "range_start" => mm * self.shapes.get("range_start"),
-            "range_length" => mm * (self.shapes.design.travel_m - self.shapes.get("range_start")),
+            "range_length" => mm * (self.shapes.design.load_end - self.shapes.get("range_start")),
             "range_ratio" => 100.0 * self.shapes.get("range_ratio"),
             "stress_max" => mpa * self.shapes.get("stress_max"),
             "stress_beam3" => mpa * self.shapes.beam_stress_at_end(2),
@@ -155,6 +161,7 @@ impl Lan {
             "least_stiffness" => 1e-2 * self.shapes.get("stiffness_min"),
             "slider_turns" => self.turning.get("force_at_end"),
             "ground_pinned" => self.pinned.get("force_at_end"),
+            "n5_free_x" => self.sideways.get("force_at_end"),
             "reissner_force" => self.reissner.force(TRAVEL_M),
             "reissner_7" => softening(&self.reissner, &self.longer, 7e-3),
             "reissner_16_8" => softening(&self.reissner, &self.longer, 16.8e-3),
@@ -237,7 +244,7 @@ const TRAVEL_M: f64 = 13.6e-3;
 fn normalised(solved: &Solved) -> f64 {
     let nodes = &solved.design.network.nodes;
     // The paper's Lx = 3.2 cm spans from n1 to n2 in the printed design; here the scale of lengths is that of its depth of travel.
-    let lx = LX_M * solved.design.travel_m / TRAVEL_M;
+    let lx = LX_M * solved.design.load_end / TRAVEL_M;
     let ei = solved.design.network.beams.first().map_or(f64::NAN, |b| b.section.bending_stiffness_n_m2());
     debug_assert!(nodes.len() == 5);
     solved.get("force_at_end") * lx * lx / ei
@@ -254,7 +261,7 @@ fn scaled_shapes(shapes: &Solved, scale: f64) -> Vec<String> {
     let mut set: Vec<String> = beams.map(|(b, name)| format!("design.beams.{name}.length={:e} m", scale * b.shape.length_m())).collect();
     let [x, y] = network.nodes[0].position_m.map(|v| scale * v);
     set.push(format!("design.nodes.n1.at=[\"{x:e} m\", \"{y:e} m\"]"));
-    set.push(format!("load.travel={:e} m", scale * shapes.design.travel_m));
+    set.push(format!("load.travel={:e} m", scale * shapes.design.load_end));
     set
 }
 
