@@ -43,7 +43,7 @@ pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnos
             let (span, turns) = blocked_load(network, spec).unwrap_or((place, false));
             let how = if turns { "cannot turn" } else { "cannot move in the direction of the load" };
             Diagnostic::error("E0506", span, format!("node `{}` {how}", node_name(node)))
-                .label("held by its support")
+                .label("held by its support or an earlier load")
                 .help("choose a direction that its support allows, or another node")
         }
         NetworkError::DrivenTwice { node, stage } => moved_twice(network, spec, (node, node_name(node)), stage, place),
@@ -57,6 +57,12 @@ pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnos
             Diagnostic::error("E0311", list.unwrap_or(place), format!("{count} nodes or beams, at most {} are accepted", Network::LARGEST))
                 .label("too many")
                 .help("use `layout.mirror` for a symmetric mechanism, or split it")
+        }
+        NetworkError::TooManyPieces { count } => {
+            let varies = spec.design.beams.iter().rev().find(|b| b.value.thickness.is_some());
+            let span = varies.map_or(place, |b| b.name.span);
+            let message = format!("thicknesses that vary cut the beams into {count} pieces, at most {} are accepted", Network::MOST_PIECES);
+            Diagnostic::error("E0311", span, message).label("too many places").help("give the thickness at fewer places")
         }
         NetworkError::Section { beam, what, value } => Diagnostic::error(
             "E0509",

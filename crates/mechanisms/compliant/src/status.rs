@@ -138,6 +138,15 @@ fn ending(words: &Words<'_>, behaviour: &Behaviour) -> (K, String, Option<String
                 }
             }),
         ),
+        Status::PulledStraight { control, beam } => (
+            K::NoEquilibriumBeyond,
+            format!(
+                "beam `{}` is pulled straight at {}: without stretching the force grows without limit",
+                words.design.beam_names.get(beam).map_or("?", String::as_str),
+                words.at(control)
+            ),
+            Some(format!("shorten `{key}` to less than {}, or use `model.beam = \"reissner\"`", words.show(control))),
+        ),
         Status::StepTooSmall { control } => (
             K::NotConverged,
             format!("the solver's steps became too small at {}", words.at(control)),
@@ -172,12 +181,14 @@ fn unfinished_stage(words: &Words<'_>, behaviour: &Behaviour) -> Option<model::S
     let stage = words.design.network.before.get(done)?;
     let (Status::NoEquilibriumBeyond { control: reached }
     | Status::StepTooSmall { control: reached }
+    | Status::PulledStraight { control: reached, .. }
     | Status::IterationLimit { control: reached, .. }) = behaviour.path.status
     else {
         return None;
     };
     let part = forcewright_base::units::format_number(100.0 * reached / stage.to.abs(), 3);
     let (kind, why) = match behaviour.path.status {
+        Status::PulledStraight { .. } => (K::NoEquilibriumBeyond, "a beam is pulled straight at"),
         Status::NoEquilibriumBeyond { .. } => (K::NoEquilibriumBeyond, "there is no neighbouring equilibrium beyond"),
         _ => (K::NotConverged, "the solver came no further than"),
     };
