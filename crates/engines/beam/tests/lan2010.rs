@@ -178,7 +178,13 @@ fn table3_forces_stresses_and_beam_forces() {
     for (point, want) in path.points.iter().zip(&TABLE3) {
         near(2.0 * point.force, want.force_n, 1e-11, "force");
         for (beam, state) in point.beams.iter().enumerate() {
-            near(state.peak_stress().stress_pa, want.stress_mpa[beam] * 1e6, 1e-9, "stress");
+            let peak = state.peak_stress();
+            let next_to_the_end = peak.u < 1.0 && peak.u > 0.999;
+            // At 1.5 cm the shear force of beam 1 changes its sign at u = 0.9997, so that its stress is 4e-7 higher there than at its
+            // end, where the independent solution took it.
+            let compared_pa = if next_to_the_end { state.stress_pa(1.0)[0].abs() } else { peak.stress_pa };
+            assert!(!next_to_the_end || (state.shear_force_n(0.999) * state.shear_force_n(1.0) < 0.0 && peak.stress_pa > compared_pa));
+            near(compared_pa, want.stress_mpa[beam] * 1e6, 1e-9, "stress");
             for axis in 0..2 {
                 near(-state.force_n[axis], want.beam_force_n[beam][axis], 1e-9, "beam force");
             }
