@@ -31,6 +31,8 @@ pub struct Behaviour {
     pub whole: bool,
     /// Where the states become unstable although the displacement is held, m: a real part leaves the computed path there.
     pub unstable_from_m: Option<f64>,
+    /// The first load before the last one on whose way a real part leaves the computed path, counted from 0, and the part of the load.
+    pub branching_load: Option<(usize, f64)>,
     /// Interpolation error of the curve relative to the largest force.
     pub interpolation_error: f64,
     /// What a slowly driven device does where the path ends at a limit point; `None` where it does not, or where that is not known.
@@ -93,7 +95,13 @@ impl Behaviour {
 
     fn from_path(path: Path, copies: f64) -> Self {
         let unstable = path.points.iter().find(|p| p.instability > 0);
-        let unstable_from_m = unstable.map(|p| path.bifurcations.first().map_or(p.displacement, |b| b.displacement.min(p.displacement)));
+        let unstable_from_m =
+            unstable.map(|p| first_branch(&path, path.before.len()).map_or(p.displacement, |b| b.displacement.min(p.displacement)));
+        let branching_load = (0..path.before.len()).find_map(|stage| {
+            let reached = path.before[stage].control.abs();
+            let branch = first_branch(&path, stage).map(|b| b.control.abs() / reached);
+            branch.or((path.before[stage].instability > 0).then_some(1.0)).map(|part| (stage, part))
+        });
         let whole = matches!(path.status, Status::Complete | Status::NotResolved { .. });
         let pick = |f: fn(&Point) -> f64, scale: f64| path.points.iter().map(|p| scale * f(p)).collect::<Vec<_>>();
         // Under a growing force the displacement may turn back: then there is no force over it.
@@ -102,7 +110,7 @@ impl Behaviour {
             .then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)));
         let largest = path.points.iter().map(|p| copies * p.force.abs()).fold(0.0, f64::max);
         let interpolation_error = curve.as_ref().map_or(0.0, |c| if largest > 0.0 { c.error_n() / largest } else { 0.0 });
-        Self { path, curve, copies, whole, unstable_from_m, interpolation_error, snap: None, sway: None }
+        Self { path, curve, copies, whole, unstable_from_m, branching_load, interpolation_error, snap: None, sway: None }
     }
 
     /// The largest stress up to the end of the path.
@@ -227,6 +235,11 @@ fn snap(design: &Design, settings: &Settings, progress: Progress<'_>) -> Result<
         (None, Status::Complete | Status::NotResolved { .. } | Status::NoEquilibriumBeyond { .. }) => Some(Snap::Nowhere),
         _ => None,
     })
+}
+
+/// Where the states become unstable under one of the loads, if that is a branch and not a limit point.
+fn first_branch(path: &Path, stage: usize) -> Option<&forcewright_beam::Bifurcation> {
+    path.bifurcations.iter().find(|b| b.stage == stage && b.after > b.before)
 }
 
 /// Whether a value below that of the least station may lie beside it: between two neighbours, or next to an end where the parabola

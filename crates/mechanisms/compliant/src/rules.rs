@@ -102,7 +102,11 @@ fn blocked_load(network: &Network, spec: &Spec) -> Option<(Span, bool)> {
         let alone = Network { before: Vec::new(), drive, ..network.clone() };
         matches!(alone.check(), Err(NetworkError::DriveBlocked { .. }))
     };
-    let (_, load) = drives.zip(&spec.load).find(|(drive, _)| blocked(*drive))?;
+    // Else an earlier load holds what a later one would move.
+    let (_, load) = drives
+        .zip(&spec.load)
+        .find(|(drive, _)| blocked(*drive))
+        .or_else(|| Some((network.drive, spec.load.iter().rev().find(|l| l.value.force.is_some() || l.value.moment.is_some())?)))?;
     let turns = load.value.moment.is_some() || load.value.rotation.is_some();
     Some((load.value.node.as_ref().map_or(load.name.span, |n| n.span), turns))
 }

@@ -7,6 +7,7 @@ use forcewright_model::{Citation, Statement, Warning};
 use crate::analysis::{Behaviour, Measured};
 use crate::crossing::first_crossing;
 use crate::design::Design;
+use crate::loads::Control;
 
 /// Length over thickness below which beam theory is doubtful.
 const SLENDER: f64 = 10.0;
@@ -223,12 +224,23 @@ fn curved_beams(design: &Design, measured: &Measured) -> Option<Warning> {
 fn leaving(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
     let mut all = Vec::new();
     let show = |x: f64| format_si(x, &design.units.displacement, 4);
+    if let Some((stage, part)) = behaviour.branching_load {
+        all.push(Warning {
+            code: "W0506",
+            message: format!(
+                "load {} becomes unstable at {} % of it: a real part leaves the computed shape there, and nothing after it holds",
+                stage + 1,
+                format_number(100.0 * part, 3)
+            ),
+        });
+    }
     if let Some(from) = behaviour.unstable_from_m {
         all.push(Warning {
             code: "W0506",
             message: format!(
-                "from Δ = {} on the computed shape is unstable even with the displacement held: a real part leaves it, and the results hold only up to there",
-                show(from)
+                "from Δ = {} on the computed shape is unstable even with the {} held: a real part leaves it, and the results hold only up to there",
+                show(from),
+                if design.control == Control::Travel { "displacement" } else { "force" }
             ),
         });
     }

@@ -89,11 +89,15 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
     if let Some(failed) = unfinished_stage(&words, behaviour) {
         return failed;
     }
-    if let Some(from) = behaviour.unstable_from_m.filter(|_| behaviour.whole) {
+    if let Some((stage, part)) = behaviour.branching_load {
+        return branching_load(&words, stage, part);
+    }
+    if let Some(from) = behaviour.unstable_from_m {
+        let end = if behaviour.whole { String::new() } else { format!(" ({})", ending(&words, behaviour).1) };
         return model::Status {
             kind: K::UnstableBeyond,
             message: format!(
-                "the path branches at Δ = {}: beyond, a real part leaves the computed shape sideways",
+                "the path branches at Δ = {}: beyond, a real part leaves the computed shape sideways{end}",
                 words.displacement(from)
             ),
             advice: Some(
@@ -172,6 +176,22 @@ fn ending(words: &Words<'_>, behaviour: &Behaviour) -> (K, String, Option<String
         ),
         Status::Stopped { control } => (K::Interrupted, format!("stopped on request at {}", words.at(control)), None),
         _ => (K::NotConverged, "the solver stopped".to_owned(), None),
+    }
+}
+
+/// A load before the last one that the mechanism does not bear in the computed shape.
+fn branching_load(words: &Words<'_>, stage: usize, part: f64) -> model::Status {
+    let drives = &words.design.network.before;
+    let node = drives.get(stage).map_or("?", |s| words.node(s.drive.node()));
+    model::Status {
+        kind: K::UnstableBeyond,
+        message: format!(
+            "load {} of {}, on node `{node}`, passes a branch at {} % of it: a real part leaves the computed shape there",
+            stage + 1,
+            drives.len() + 1,
+            forcewright_base::units::format_number(100.0 * part, 3)
+        ),
+        advice: Some("lower this load, or give the design the imperfection of a real part (a small bend, a shifted node)".to_owned()),
     }
 }
 

@@ -309,3 +309,29 @@ fn swaying_begins_where_the_whole_becomes_unstable() {
     let warned = Compliant::analyse(&half.design, &mut |_| true).outcome.warnings;
     assert!(warned.iter().any(|w| w.code == "W0510"), "{warned:?}");
 }
+
+/// A straight column under more than Euler's load π² EI/(4 L²), then pushed sideways: the first load is named, with the part of it that
+/// the column bears.
+#[test]
+fn a_load_that_buckles_is_named() {
+    let column = |force: &str| {
+        format!(
+            "schema = 1\nmechanism = \"compliant\"\ntitle = \"Column\"\n[material]\nyoung_modulus = \"200 GPa\"\n\
+             [design]\nthickness = \"1 mm\"\ndepth = \"10 mm\"\n[design.nodes]\n\
+             a = {{ at = [\"0 mm\", \"0 mm\"], support = \"clamped\" }}\nb = {{ at = [\"100 mm\", \"0 mm\"] }}\n\
+             [[design.beams]]\nname = \"r\"\nbetween = [\"a\", \"b\"]\nstraight = true\n[model]\nbeam = \"inextensible\"\n\
+             [[load]]\nnode = \"b\"\ndirection = [-1, 0]\nforce = \"{force}\"\n\
+             [[load]]\nnode = \"b\"\ndirection = [0, -1]\ntravel = \"5 mm\"\n"
+        )
+    };
+    let euler_n = std::f64::consts::PI * std::f64::consts::PI * 200e9 * 1e-9 * 0.01 / 12.0 / (4.0 * 0.01);
+    let buckled = outcome(&column("60 N"), &[]);
+    assert_eq!(buckled.status.kind, StatusKind::UnstableBeyond);
+    let part = format!("passes a branch at {:.1} % of it", 100.0 * euler_n / 60.0);
+    assert!(
+        buckled.status.message.starts_with("load 1 of 2, on node `b`") && buckled.status.message.contains(&part),
+        "{:?}",
+        buckled.status
+    );
+    assert_eq!(outcome(&column("40 N"), &[]).status.kind, StatusKind::Complete);
+}
