@@ -1,0 +1,1 @@
+//! Smooth constrained optimisation: sequential quadratic programming with exact gradients.

@@ -1,0 +1,1 @@
+//! Points, distributions and what is estimated from samples: quasi-Monte Carlo, yield, sensitivity.
