@@ -63,6 +63,24 @@ pub fn log10(x: f64) -> f64 {
     libm::log10(x)
 }
 
+/// `ln(1 + x)`, without the loss of digits near 0.
+#[inline]
+pub fn ln_1p(x: f64) -> f64 {
+    libm::log1p(x)
+}
+
+/// Complementary error function, `2/√π ∫ₓ^∞ exp(−t²) dt`.
+#[inline]
+pub fn erfc(x: f64) -> f64 {
+    libm::erfc(x)
+}
+
+/// Logarithm of the gamma function, for `x > 0`.
+#[inline]
+pub fn ln_gamma(x: f64) -> f64 {
+    libm::lgamma(x)
+}
+
 /// `x` to the power `y`.
 #[inline]
 pub fn powf(x: f64, y: f64) -> f64 {

@@ -1,4 +1,10 @@
 //! Studies of designs: they see numbers in and numbers out, never a mechanism.
 
+pub mod differences;
+pub mod evaluator;
 pub mod nlp;
+pub mod optimise;
+mod posing;
 pub mod sampling;
+pub mod task;
+pub mod tolerance;

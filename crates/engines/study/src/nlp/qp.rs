@@ -1,0 +1,116 @@
+//! The quadratic programme of an iteration, and how it is solved.
+//!
+//! `min ½dᵀHd + gᵀd + γ·Σ excess` subject to `l ≤ A·d ≤ u` (rows) and `lower ≤ d ≤ upper`. With `γ = ∞` rows must hold; otherwise each
+//! may be exceeded at the price `γ` per unit (elastic mode, an ℓ₁ penalty).
+//!
+//! `H` is positive definite, so any point that satisfies the optimality conditions *is* the solution. That licenses a cheap first try:
+//! start from the active set of the last programme, mend it a few times, and accept it only when every condition was checked. Near
+//! a solution the active set no longer changes and one small linear system per iteration is all. Where the guess fails, the
+//! interior-point method decides, on the rows near their bounds first and then on those that its answer violates, until none is; its
+//! answer, exact to about 1e-9, is then taken to working precision by the same linear system.
+
+use super::active::{Equations, Guess};
+use super::interior;
+use super::outcome::Counters;
+
+/// Data of a quadratic programme; matrices are row-major.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Qp<'a> {
+    pub(super) n: usize,
+    /// Positive definite.
+    pub(super) hessian: &'a [f64],
+    pub(super) gradient: &'a [f64],
+    pub(super) rows: &'a [f64],
+    pub(super) row_lower: &'a [f64],
+    pub(super) row_upper: &'a [f64],
+    pub(super) lower: &'a [f64],
+    pub(super) upper: &'a [f64],
+    /// `γ`.
+    pub(super) penalty: f64,
+    /// Rows from this one on must hold whatever `γ` is.
+    pub(super) firm_from: usize,
+}
+
+impl Qp<'_> {
+    pub(super) fn row(&self, i: usize) -> &[f64] {
+        &self.rows[i * self.n..(i + 1) * self.n]
+    }
+
+    /// Whether the bounds of a row leave one value only.
+    pub(super) fn is_equality(&self, i: usize) -> bool {
+        self.row_upper[i] - self.row_lower[i] <= 0.0
+    }
+
+    /// What exceeding a row costs per unit.
+    pub(super) fn price(&self, i: usize) -> f64 {
+        if i < self.firm_from { self.penalty } else { f64::INFINITY }
+    }
+}
+
+/// Solution of a quadratic programme. Multipliers are rates of its optimum with the bounds: positive at lower ones.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Answer {
+    pub(super) step: Vec<f64>,
+    pub(super) rows: Vec<f64>,
+    pub(super) bounds: Vec<f64>,
+}
+
+/// How solving went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outcome {
+    Solved,
+    /// The rows contradict each other or the bounds (only without a penalty).
+    Infeasible,
+    /// The interior-point method broke down.
+    Failed,
+}
+
+/// A solver that remembers the last active set.
+#[derive(Debug, Default)]
+pub(super) struct QpSolver {
+    equations: Equations,
+    guess: Guess,
+    pub(super) answer: Answer,
+}
+
+impl QpSolver {
+    /// Solves into [`QpSolver::answer`].
+    pub(super) fn solve(&mut self, qp: &Qp<'_>, counters: &mut Counters) -> Outcome {
+        counters.qps += 1;
+        if qp.n == 0 {
+            return self.without_variables(qp);
+        }
+        self.guess.fit(qp);
+        if self.equations.mend(qp, &mut self.guess, &mut self.answer) {
+            return Outcome::Solved;
+        }
+        counters.interior_qps += 1;
+        let found = match interior::solve(qp, &self.guess) {
+            Ok(found) => found,
+            Err(outcome) => {
+                self.guess = Guess::default();
+                return outcome;
+            }
+        };
+        self.guess.read(qp, &found);
+        let mut polished = self.guess.clone();
+        if self.equations.mend(qp, &mut polished, &mut self.answer) {
+            self.guess = polished;
+        } else {
+            self.answer = found;
+        }
+        Outcome::Solved
+    }
+
+    /// Nothing to choose: only the prices of what is violated.
+    fn without_variables(&mut self, qp: &Qp<'_>) -> Outcome {
+        let price = |(l, u): (&f64, &f64)| f64::from(u8::from(*l > 0.0)) - f64::from(u8::from(*u < 0.0));
+        let sides: Vec<f64> = qp.row_lower.iter().zip(qp.row_upper).map(price).collect();
+        if qp.penalty.is_infinite() && sides.iter().any(|s| *s != 0.0) {
+            return Outcome::Infeasible;
+        }
+        let rows = sides.iter().map(|s| if *s == 0.0 { 0.0 } else { s * qp.penalty }).collect();
+        self.answer = Answer { rows, ..Answer::default() };
+        Outcome::Solved
+    }
+}

@@ -1,0 +1,322 @@
+//! Searching for better designs: one or many starts, the basins that they lead to, and what limits the best.
+
+use rayon::prelude::*;
+
+use crate::evaluator::{Evaluation, Evaluator};
+use crate::nlp::{self, Stop};
+use crate::posing::{Posing, Source};
+use crate::sampling::Sobol;
+use crate::task::{Goal, Task};
+
+/// Two runs lie in the same basin if no variable differs by more than this part of its range.
+const SAME: f64 = 0.02;
+/// A multiplier below this part of the largest is rounding.
+const IDLE: f64 = 1e-6;
+
+/// Tolerance, least gain and most iterations of steps that lead to the last one.
+const ON_THE_WAY: f64 = 1e-2;
+const MOST_ON_THE_WAY: usize = 40;
+
+/// What a search is asked for.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Number of starts: the first from the design, the others spread over the ranges by a scrambled Sobol sequence.
+    pub starts: usize,
+    /// Seed of the starts after the first.
+    pub seed: u64,
+    /// How far inside its limits the design is kept, relative to each limit.
+    pub margin: f64,
+    /// Of the optimiser.
+    pub nlp: nlp::Settings,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        // A design is made to four digits, its curve computed to five.
+        let nlp = nlp::Settings { tolerance: 1e-5, feasibility: 1e-5, iteration_limit: 200, least_gain: 1e-5, ..nlp::Settings::default() };
+        Self { starts: 1, seed: 1, margin: 0.0, nlp }
+    }
+}
+
+/// Where a search stands: one start, one iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// The start, from 0.
+    pub start: usize,
+    /// The step of the task, from 0.
+    pub step: usize,
+    /// The iteration of that step.
+    pub iteration: usize,
+    /// The goal's value at the best point so far, as [`Run::goal`].
+    pub goal: f64,
+    /// The largest violation there, relative to the scale of its limit.
+    pub violation: f64,
+}
+
+/// A limit or range that holds the optimum back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Active {
+    /// The limit in words, or the path of the variable at the end of its range.
+    pub name: String,
+    /// Key in the project file that relaxes it.
+    pub key: String,
+    /// The limit's value, SI.
+    pub bound: f64,
+    /// Symbol of the SI unit.
+    pub unit: &'static str,
+    /// What the goal would gain, to first order, if the limit were relaxed by one percent of its own size, or of what is a large change
+    /// where it is zero; the range of a variable by one percent of itself.
+    pub gain: f64,
+    /// How many of its values are at the limit.
+    pub places: usize,
+}
+
+/// One local search.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Where it started, SI.
+    pub start: Vec<f64>,
+    /// Where it ended, SI.
+    pub x: Vec<f64>,
+    /// The value of the goal at its end, in the unit of the goal: the half width of the band, the weighted sum, the largest value, the
+    /// sum of squares. Smaller is better.
+    pub goal: f64,
+    /// Largest violation of a limit, relative to its scale.
+    pub violation: f64,
+    /// Distance from the optimality conditions, scaled.
+    pub kkt_residual: f64,
+    /// How it ended.
+    pub stop: Stop,
+    /// The goal and the violation at the best point, iteration by iteration, of the last step.
+    pub history: Vec<[f64; 2]>,
+    /// Iterations of all steps.
+    pub iterations: usize,
+    /// Designs evaluated.
+    pub evaluations: u64,
+    /// What holds it back, the strongest first.
+    pub active: Vec<Active>,
+}
+
+impl Run {
+    /// Whether its end keeps to all limits.
+    pub fn feasible(&self, tolerance: f64) -> bool {
+        self.violation <= tolerance && self.goal.is_finite()
+    }
+}
+
+/// Runs that ended at the same design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basin {
+    /// The best of them, by its index.
+    pub best: usize,
+    /// All of them.
+    pub members: Vec<usize>,
+}
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub struct Search {
+    /// All runs, in the order of their starts; without those that had not begun when it was interrupted.
+    pub runs: Vec<Run>,
+    /// The best: the feasible one of the least goal, or the one of the least violation.
+    pub best: Option<usize>,
+    /// Feasible runs by where they ended, the best basin first.
+    pub basins: Vec<Basin>,
+    /// Whether it was interrupted.
+    pub interrupted: bool,
+}
+
+/// Searches from one or many starts. `watch` sees every iteration of every start, from any thread, and stops all of them by returning
+/// `false`; the best so far is kept. The same seed gives the same bits for any number of threads.
+pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bool + Sync)) -> Search {
+    let interrupted = std::sync::atomic::AtomicBool::new(false);
+    let go_on = |progress: &Progress| {
+        let on = !interrupted.load(std::sync::atomic::Ordering::Relaxed) && watch(progress);
+        if !on {
+            interrupted.store(true, std::sync::atomic::Ordering::Relaxed);
+        }
+        on
+    };
+    let starts = starts(task.evaluator.as_ref(), settings);
+    let run = |(index, start)| {
+        // Starts that have not begun when it is interrupted never do; the first always does, so that there is a best.
+        let begins = index == 0 || !interrupted.load(std::sync::atomic::Ordering::Relaxed);
+        begins.then(|| run_steps(task, settings, (index, start, 0), &go_on))
+    };
+    let runs: Vec<Option<Run>> = starts.into_par_iter().enumerate().map(run).collect();
+    let runs: Vec<Run> = runs.into_iter().flatten().collect();
+    let tolerance = settings.nlp.feasibility.max(1e-6) * 10.0;
+    let feasible: Vec<usize> = (0..runs.len()).filter(|i| runs[*i].feasible(tolerance)).collect();
+    let least = |indices: &[usize], of: &dyn Fn(&Run) -> f64| {
+        indices.iter().copied().filter(|i| !of(&runs[*i]).is_nan()).reduce(|best, i| if of(&runs[i]) < of(&runs[best]) { i } else { best })
+    };
+    let all: Vec<usize> = (0..runs.len()).collect();
+    let best = least(&feasible, &|r| r.goal).or_else(|| least(&all, &|r| r.violation));
+    let basins = basins(task.evaluator.as_ref(), &runs, feasible);
+    Search { best, basins, interrupted: interrupted.into_inner(), runs }
+}
+
+/// Searches on from where a run ended, with other settings; only the last step of the task.
+pub fn again(task: &Task, settings: &Settings, run: &Run, watch: &(dyn Fn(&Progress) -> bool + Sync)) -> Run {
+    let last = task.steps.len().saturating_sub(1);
+    let mut next = run_steps(task, settings, (0, run.x.clone(), last), &|p| watch(p));
+    next.start.clone_from(&run.start);
+    next.iterations += run.iterations;
+    next.evaluations += run.evaluations;
+    next
+}
+
+/// The design itself, and points spread over the ranges that are finite.
+fn starts(evaluator: &dyn Evaluator, settings: &Settings) -> Vec<Vec<f64>> {
+    let variables = evaluator.variables();
+    let nominal: Vec<f64> = variables.iter().map(|v| v.nominal).collect();
+    let mut starts = vec![nominal];
+    let spread = |v: &crate::evaluator::Variable| v.lower.is_finite() && v.upper.is_finite();
+    let dimensions = variables.iter().filter(|v| spread(v)).count();
+    let Ok(sobol) = Sobol::scrambled(dimensions.max(1), settings.seed) else { return starts };
+    let mut point = vec![0.0; dimensions.max(1)];
+    for index in 1..settings.starts.max(1) {
+        sobol.point(index as u64, &mut point);
+        let mut parts = point.iter();
+        let x = variables.iter().map(|v| match parts.next().filter(|_| spread(v)) {
+            Some(part) => v.lower + part * (v.upper - v.lower),
+            None => v.nominal,
+        });
+        starts.push(x.collect());
+    }
+    starts
+}
+
+fn run_steps(task: &Task, settings: &Settings, (index, start, first): (usize, Vec<f64>, usize), go_on: &dyn Fn(&Progress) -> bool) -> Run {
+    let mut run = Run {
+        x: start.clone(),
+        start,
+        goal: f64::NAN,
+        violation: f64::INFINITY,
+        kkt_residual: f64::INFINITY,
+        stop: Stop::StartRejected,
+        history: Vec::new(),
+        iterations: 0,
+        evaluations: 0,
+        active: Vec::new(),
+    };
+    for (number, step) in task.steps.iter().enumerate().skip(first) {
+        let Some(mut posing) = Posing::new(task, step, &run.x, settings.margin) else { break };
+        let start = posing.start.clone();
+        // Limits come with their scales.
+        let mut nlp = nlp::Settings { constraint_scales: vec![1.0; posing.sources.len()], ..settings.nlp.clone() };
+        if number + 1 < task.steps.len() {
+            // A step on the way need only lead near.
+            (nlp.tolerance, nlp.least_gain, nlp.iteration_limit) = (ON_THE_WAY, ON_THE_WAY, nlp.iteration_limit.min(MOST_ON_THE_WAY));
+        }
+        run.history.clear();
+        let history = &mut run.history;
+        let solution = nlp::minimise(&mut posing, &start, &nlp, &mut |p: &nlp::Progress| {
+            history.push([p.best_objective, p.best_violation]);
+            go_on(&Progress { start: index, step: number, iteration: p.iteration, goal: p.best_objective, violation: p.best_violation })
+        });
+        run.iterations += solution.counters.iterations;
+        run.evaluations += posing.evaluations;
+        run.stop = solution.stop;
+        if matches!(solution.stop, Stop::StartRejected | Stop::Malformed) {
+            break;
+        }
+        run.x = posing.design(&solution.x);
+        run.goal = solution.objective;
+        run.violation = solution.violation;
+        run.kkt_residual = solution.kkt_residual.optimality();
+        run.active = active(task, &posing, &solution);
+        // A step on the way that fails leaves a start as good as any.
+        if solution.stop == Stop::Interrupted {
+            break;
+        }
+    }
+    run
+}
+
+/// What holds the optimum back, with what relaxing it would gain.
+fn active(task: &Task, posing: &Posing, solution: &nlp::Solution) -> Vec<Active> {
+    let mut found: Vec<Active> = Vec::new();
+    for (source, multiplier) in posing.sources.iter().zip(&solution.multipliers) {
+        let Source::Limit(index, _) = *source else { continue };
+        let limit = &task.limits[index];
+        if *multiplier == 0.0 {
+            continue;
+        }
+        let bound = if *multiplier > 0.0 { limit.lower } else { limit.upper };
+        let relaxed = 0.01 * if bound == 0.0 { 1.0 } else { bound.abs() / limit.scale };
+        let gain = multiplier.abs() * relaxed;
+        match found.iter_mut().find(|a| a.key == limit.key && a.bound.to_bits() == bound.to_bits()) {
+            Some(known) => {
+                known.gain += gain;
+                known.places += 1;
+            }
+            None => found.push(Active { name: limit.name.clone(), key: limit.key.clone(), bound, unit: limit.unit, gain, places: 1 }),
+        }
+    }
+    for (variable, multiplier) in task.evaluator.variables().iter().zip(&solution.bound_multipliers) {
+        if *multiplier != 0.0 {
+            let bound = if *multiplier > 0.0 { variable.lower } else { variable.upper };
+            found.push(Active {
+                name: variable.path.clone(),
+                key: variable.path.clone(),
+                bound,
+                unit: variable.unit,
+                gain: 0.01 * multiplier.abs(),
+                places: 1,
+            });
+        }
+    }
+    let most = found.iter().map(|a| a.gain).fold(0.0, f64::max);
+    found.retain(|a| a.gain > IDLE * most);
+    found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    found
+}
+
+/// Groups runs by where they ended.
+fn basins(evaluator: &dyn Evaluator, runs: &[Run], mut feasible: Vec<usize>) -> Vec<Basin> {
+    feasible.sort_by(|a, b| runs[*a].goal.total_cmp(&runs[*b].goal).then(a.cmp(b)));
+    let near = |a: &Run, b: &Run| {
+        let all = evaluator.variables().iter().zip(a.x.iter().zip(&b.x));
+        all.fold(0.0_f64, |m, (v, (a, b))| m.max((a - b).abs() / v.scale())) <= SAME
+    };
+    let mut basins: Vec<Basin> = Vec::new();
+    for index in feasible {
+        match basins.iter_mut().find(|b| near(&runs[b.best], &runs[index])) {
+            Some(basin) => basin.members.push(index),
+            None => basins.push(Basin { best: index, members: vec![index] }),
+        }
+    }
+    basins
+}
+
+impl Task {
+    /// The goal at a design, in its own unit: what [`Run::goal`] is at the end of a run. `None` if it has no values.
+    pub fn goal_at(&self, x: &[f64]) -> Option<f64> {
+        let step = self.steps.last()?;
+        let mut workspace = self.evaluator.workspace();
+        let mut evaluation = Evaluation::default();
+        self.evaluator.evaluate(x, false, &mut evaluation, &mut workspace).ok()?;
+        let values = &evaluation.values;
+        Some(match &step.goal {
+            Goal::Variables(weights) => weights.iter().map(|(i, w)| w * x[*i]).sum(),
+            Goal::Values(weights) => weights.iter().map(|(i, w)| w * values[*i]).sum(),
+            Goal::Largest { values: range, scale } => values[range.clone()].iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v)) / scale,
+            Goal::Squares { values: range, targets, scale } => {
+                values[range.clone()].iter().zip(targets).map(|(v, t)| (v - t) / scale).map(|d| d * d).sum()
+            }
+            Goal::HalfWidth => {
+                let open = step.bands.iter().filter(|b| b.half_width.is_none());
+                let width = |band: &crate::task::Band| {
+                    let own = &values[band.values.clone()];
+                    let (high, low) = own.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(h, l), v| (h.max(*v), l.min(*v)));
+                    match band.level {
+                        Some(level) => (high / level - 1.0).abs().max((low / level - 1.0).abs()),
+                        None => (high - low) / (high + low).abs(),
+                    }
+                };
+                open.map(width).fold(0.0, f64::max)
+            }
+        })
+    }
+}
