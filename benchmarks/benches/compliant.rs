@@ -6,7 +6,9 @@ use forcewright::contract::family::Mechanism;
 use forcewright::contract::project::Project;
 use forcewright::contract::read;
 use forcewright::{Choices, Loaded, gallery};
-use forcewright_beam::{CurveSolver, Network, Parameter, Settings, Shape, Support, Theory, trace};
+use forcewright_beam::{
+    Axis, BatchSolver, CurveSolver, Derivatives, Network, Output, Parameter, Settings, Shape, Support, Theory, Variant, trace,
+};
 
 fn main() {
     divan::main();
@@ -82,11 +84,39 @@ fn fast_gradient_34x13(bencher: Bencher<'_, '_>, theory: Theory) {
     let design = design();
     let stations: Vec<f64> = (0..34).map(|i| 13.6e-3 * f64::from(i) / 33.0).collect();
     let settings = Settings { theory, accuracy: 1e-3, ..Settings::default() };
-    let mut parameters = vec![Parameter::NodeX(2), Parameter::NodeY(2), Parameter::NodeX(3), Parameter::NodeY(3), Parameter::AllThickness];
-    parameters.extend((0..4).flat_map(|beam| [1, 2].map(|k| Parameter::Bend { beam, k })));
+    let parameters = parameters();
     let mut solver = CurveSolver::new();
     bencher.bench_local(|| {
         solver.solve_with_gradient(black_box(&design.network), &stations, &settings, &parameters).map(|r| r.force_gradient.len())
+    });
+}
+
+/// What a design moves: two nodes, the thickness, both bends of four beams.
+fn parameters() -> Vec<Parameter> {
+    let mut parameters = vec![Parameter::NodeX(2), Parameter::NodeY(2), Parameter::NodeX(3), Parameter::NodeY(3), Parameter::AllThickness];
+    parameters.extend((0..4).flat_map(|beam| [1, 2].map(|k| Parameter::Bend { beam, k })));
+    parameters
+}
+
+/// What an optimiser asks of a design, at 1e-5: the force at 34 stations, and at three displacements force, stiffness, the largest stress
+/// of four beams and the places of their middles, all with their derivatives by 13 parameters.
+#[divan::bench(args = [Theory::Inextensible, Theory::Reissner], sample_count = 200)]
+fn fast_states_3x13(bencher: Bencher<'_, '_>, theory: Theory) {
+    let design = design();
+    let stations: Vec<f64> = (0..34).map(|i| 13.6e-3 * f64::from(i) / 33.0).collect();
+    let settings = Settings { theory, accuracy: 1e-5, ..Settings::default() };
+    let mut outputs = vec![Output::Force, Output::Stiffness];
+    outputs.extend((0..4).map(|beam| Output::PeakStress { beam: Some(beam) }));
+    outputs.extend((0..4).flat_map(|beam| [Axis::X, Axis::Y].map(|axis| Output::Position { beam, u: 0.5, axis })));
+    let (parameters, mut solver, mut derivatives) = (parameters(), CurveSolver::new(), Derivatives::default());
+    bencher.bench_local(|| {
+        let network = black_box(&design.network);
+        let states = solver.solve_with_states(network, &stations, &settings, &parameters, &[4e-3, 8e-3, 13e-3]);
+        let mut states = states.expect("a network");
+        for state in 0..states.count() {
+            states.derivatives(state, &outputs, &mut derivatives).expect("they exist");
+        }
+        derivatives.by_parameter[0]
     });
 }
 
@@ -101,6 +131,38 @@ fn batch_1e4(bencher: Bencher<'_, '_>) {
     bencher.counter(divan::counter::ItemsCount::new(networks.len())).bench_local(|| {
         let force = |n: &Network| solver.solve(black_box(n), &stations, &settings).map_or(0.0, |r| r.force_n[33] + r.stress_pa[33]);
         networks.iter().map(force).sum::<f64>()
+    });
+}
+
+/// The same hundred designs side by side, from networks that are there.
+#[divan::bench(sample_count = 30)]
+fn batch_1e4_side_by_side(bencher: Bencher<'_, '_>) {
+    let design = design();
+    let stations: Vec<f64> = (0..34).map(|i| 13.6e-3 * f64::from(i) / 33.0).collect();
+    let settings = Settings { theory: Theory::Inextensible, accuracy: 1e-4, ..Settings::default() };
+    let networks: Vec<Network> = (0..100).map(|index| variant(&design.network, index)).collect();
+    let mut solver = BatchSolver::new();
+    bencher.counter(divan::counter::ItemsCount::new(networks.len())).bench_local(|| {
+        let mut sum = 0.0;
+        solver.solve(black_box(&networks), &stations, &settings, |_, r| sum += r.map_or(0.0, |r| r.force_n[33] + r.stress_pa[33]));
+        sum
+    });
+}
+
+/// The same from their numbers: nodes and bends in, force, stiffness and stress at 34 stations out.
+#[divan::bench(sample_count = 30)]
+fn batch_1e4_from_numbers(bencher: Bencher<'_, '_>) {
+    let design = design();
+    let stations: Vec<f64> = (0..34).map(|i| 13.6e-3 * f64::from(i) / 33.0).collect();
+    let settings = Settings { theory: Theory::Inextensible, accuracy: 1e-4, ..Settings::default() };
+    let variants: Vec<Variant> = (0..100).map(|index| Variant::of(&variant(&design.network, index))).collect();
+    let mut solver = BatchSolver::new();
+    bencher.counter(divan::counter::ItemsCount::new(variants.len())).bench_local(|| {
+        let mut sum = 0.0;
+        let set = |index: usize, numbers: &mut Variant| numbers.clone_from(&black_box(&variants)[index]);
+        let sink = |_: usize, r: Result<&forcewright_beam::Response, _>| sum += r.map_or(0.0, |r| r.force_n[33] + r.stress_pa[33]);
+        solver.solve_variants(&design.network, variants.len(), set, &stations, &settings, sink);
+        sum
     });
 }
 

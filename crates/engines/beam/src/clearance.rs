@@ -2,8 +2,9 @@
 //!
 //! Looked for are pairs of places on the axes whose distance is smallest among all neighbouring pairs: two places inside, an end and a
 //! place inside, or two ends. Neighbours of a joint are the places on all beams that meet there; so beams that grow apart from a joint,
-//! and the parts of a chain of beams, are not near each other, and the joint itself, where the distance is zero, is no such pair. From
-//! the distance of the axes goes half of either thickness.
+//! and the parts of a chain of beams, are not near each other, and the joint itself, where the distance is zero, is no such pair; nor are
+//! two ends on one rigid body. From the distance of the axes goes half of either thickness: a beam is all that is within half its thickness
+//! of its axis, so its ends are round.
 
 use forcewright_base::maths;
 
@@ -236,6 +237,8 @@ impl<'a> Strand<'a> {
 struct Joints {
     /// Per beam and end: the number of its place.
     place: Vec<[usize; 2]>,
+    /// Per beam and end: the node, which as a rigid body joins ends at different places.
+    node: Vec<[usize; 2]>,
     /// Per place: whether it lies on the mirror line.
     on_line: Vec<bool>,
     size_m: f64,
@@ -257,8 +260,9 @@ impl Joints {
         let ends = |b: &Beam| [(b.start, b.arms_m[0]), (b.end, b.arms_m[1])];
         let end = |(node, arm): (usize, [f64; 2])| [0, 1].map(|i| network.nodes[node].position_m[i] + arm[i]);
         let place = network.beams.iter().map(|b| ends(b).map(|e| number(end(e)))).collect();
+        let node = network.beams.iter().map(|b| [b.start, b.end]).collect();
         let on_line = known.iter().map(|p| reflection.is_some_and(|r| distance(r.image(*p), *p) <= TOUCH * size_m)).collect();
-        Self { place, on_line, size_m }
+        Self { place, node, on_line, size_m }
     }
 }
 
@@ -390,6 +394,11 @@ impl Search<'_> {
         {
             return None;
         }
+        // Two ends on a rigid body stay as far apart as they were made.
+        let body = |beam: usize, u: f64| end_at(u).map(|end| self.joints.node[beam][end]);
+        if !pair.mirrored && body(pair.first, u).is_some_and(|a| body(pair.second, v) == Some(a)) {
+            return None;
+        }
         // A beam that meets its image on the line does so in one joint.
         if pair.mirrored && pair.first == pair.second && axes_m <= TOUCH * self.size_m && node.is_some_and(|n| self.joints.on_line[n]) {
             return None;
@@ -417,14 +426,7 @@ impl Search<'_> {
 
     /// The number of the joint at a place, if it is an end.
     fn joint_at(&self, beam: usize, u: f64) -> Option<usize> {
-        let [start, end] = self.joints.place[beam];
-        if u <= 0.0 {
-            Some(start)
-        } else if u >= 1.0 {
-            Some(end)
-        } else {
-            None
-        }
+        end_at(u).map(|end| self.joints.place[beam][end])
     }
 
     /// Unit vectors along all beams that leave a joint, with their images if it lies on the mirror line.
@@ -438,6 +440,17 @@ impl Search<'_> {
                 [Some(along), image].into_iter().flatten()
             })
         })
+    }
+}
+
+/// Which end a place is, if it is one.
+fn end_at(u: f64) -> Option<usize> {
+    if u <= 0.0 {
+        Some(0)
+    } else if u >= 1.0 {
+        Some(1)
+    } else {
+        None
     }
 }
 

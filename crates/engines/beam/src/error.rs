@@ -124,6 +124,11 @@ pub enum NetworkError {
         /// Its place in the list.
         index: usize,
     },
+    /// A state is asked for at a negative displacement, or beyond the last station.
+    States {
+        /// Its place in the list.
+        index: usize,
+    },
     /// The accuracy is not in (0, 1).
     Accuracy {
         /// What was asked.
@@ -182,6 +187,7 @@ impl fmt::Display for NetworkError {
             Self::Stations { index } => {
                 write!(f, "control value {index} is not a finite number above the one before it (the first: not below 0)")
             }
+            Self::States { index } => write!(f, "displacement {index} of a state is not a number from 0 to the last station"),
             Self::Accuracy { accuracy } => write!(f, "accuracy is {accuracy}; it must be above 0 and below 1"),
         }
     }

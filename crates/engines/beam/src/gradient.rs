@@ -23,6 +23,7 @@
 
 mod closure;
 mod compute;
+mod derivatives;
 mod design;
 mod field;
 mod seed;
@@ -31,6 +32,8 @@ use std::fmt;
 
 pub use closure::ChordSensitivity;
 pub use compute::Gradients;
+pub use derivatives::Derivatives;
+pub(crate) use {compute::NO_DISTANCE, derivatives::gap_m};
 
 use crate::clearance::Reflection;
 use crate::state::Face;
@@ -70,6 +73,13 @@ pub enum Output {
     PeakStress {
         /// Of which beam; `None` for the largest of all, [`Point::peak_stress`].
         beam: Option<usize>,
+    },
+    /// The largest stress magnitude of one face, [`BeamState::peak_stress_of_face`], Pa; as for both, its place does not matter.
+    FacePeakStress {
+        /// Of which beam.
+        beam: usize,
+        /// On which face.
+        face: Face,
     },
     /// One coordinate of [`BeamState::shape_m`], m.
     Position {
@@ -234,6 +244,11 @@ pub enum GradientError {
     },
     /// The point does not belong to this path.
     ForeignPoint,
+    /// There is no state of that number: the path ended before, or fewer were asked for.
+    NoState {
+        /// The number of the state, from 0.
+        state: usize,
+    },
     /// A limit point: the state has no derivative by the control, nor by the design.
     LimitPoint {
         /// The control there, in the unit of the drive.
@@ -252,6 +267,7 @@ impl fmt::Display for GradientError {
             Self::NoBeam { beam } => write!(f, "there is no beam {beam} to differentiate"),
             Self::NoNode { node } => write!(f, "there is no node {node} to differentiate"),
             Self::NotOnBeam { u } => write!(f, "u = {u} is not on a beam; it must be in [0, 1]"),
+            Self::NoState { state } => write!(f, "there is no state {state} to differentiate; the path may have ended before it"),
             Self::ForeignPoint => write!(f, "the point is not an equilibrium of this path; take it from the path"),
             Self::LimitPoint { control } => {
                 write!(f, "at {control:.6e} the path turns back and has no gradient; differentiate at another control")

@@ -205,7 +205,7 @@ pub enum Joints {
     #[default]
     Point,
     /// In a block: each beam is rigid as far as it lies inside another one, up to the corner of their inner faces. Only where beams
-    /// are joined rigidly to the node itself, without [`Beam::arms_m`].
+    /// are joined rigidly at the same place: to the same node, with equal [`Beam::arms_m`].
     Overlap,
 }
 

@@ -58,6 +58,8 @@ struct Side {
     /// Direction in which the beam leaves, rad.
     angle: f64,
     half_m: f64,
+    /// From the node to the place, m.
+    arm_m: [f64; 2],
 }
 
 impl Zones {
@@ -67,7 +69,7 @@ impl Zones {
         Self { at: vec![[Zone::default(); 2]; count], flexible: vec![[0.0, 1.0]; count] }
     }
 
-    /// Zones at all rigid joints; hinges and beams on arms have none.
+    /// Zones at all rigid joints; hinges have none. On a rigid body, beams meet where their arms end at the same place.
     ///
     /// # Errors
     /// [`NetworkError::AllRigid`] where zones leave next to nothing of a beam.
@@ -76,7 +78,7 @@ impl Zones {
         for node in 0..network.nodes.len() {
             let ends = ends_at(network, node);
             for own in &ends {
-                for other in ends.iter().filter(|o| (o.beam, o.end) != (own.beam, own.end)) {
+                for other in ends.iter().filter(|o| (o.beam, o.end) != (own.beam, own.end) && is_zero(between(o.arm_m, own.arm_m))) {
                     let zone = pair(own, other);
                     let longest = &mut zones.at[own.beam][own.end];
                     if zone.length_m > longest.length_m {
@@ -117,12 +119,16 @@ fn ends_at(network: &Network, node: usize) -> Vec<Side> {
     for (beam, b) in network.beams.iter().enumerate() {
         let sides = [(b.start, b.start_joint, 0.0, 0.0), (b.end, b.end_joint, 1.0, std::f64::consts::PI)];
         for (end, (at, joint, u, turn)) in sides.into_iter().enumerate() {
-            if at == node && joint == Joint::Rigid && is_zero(b.arms_m[end]) {
-                ends.push(Side { beam, end, angle: b.shape.angle_at(u) + turn, half_m: 0.5 * b.thickness_at(u) });
+            if at == node && joint == Joint::Rigid {
+                ends.push(Side { beam, end, angle: b.shape.angle_at(u) + turn, half_m: 0.5 * b.thickness_at(u), arm_m: b.arms_m[end] });
             }
         }
     }
     ends
+}
+
+fn between(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
 }
 
 /// The zone of `own` where it meets `other`.
@@ -156,7 +162,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     fn end(angle: f64, half_m: f64) -> Side {
-        Side { beam: 0, end: 0, angle, half_m }
+        Side { beam: 0, end: 0, angle, half_m, arm_m: [0.0; 2] }
     }
 
     #[test]

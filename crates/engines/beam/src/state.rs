@@ -165,10 +165,8 @@ pub(crate) struct Sampling {
 }
 
 impl Sampling {
-    /// Chebyshev points, more than modes, so that no extremum of their sum falls between two of them unseen.
     pub(crate) fn new(modes: usize, rule: Arc<GaussLegendre>) -> Self {
-        let intervals = modes + modes / 2;
-        let u: Vec<f64> = (0..=intervals).map(|i| 0.5 - 0.5 * maths::cos(std::f64::consts::PI * i as f64 / intervals as f64)).collect();
+        let u = chebyshev(modes);
         let mut p = vec![0.0; modes + 2];
         let (mut slopes, mut values) = (Vec::new(), Vec::new());
         for &u in &u {
@@ -312,6 +310,18 @@ impl BeamState {
     pub fn peak_stress(&self) -> PeakStress {
         self.peak
     }
+
+    /// The largest stress magnitude of one face over the whole length, ends included.
+    pub fn peak_stress_of_face(&self, face: Face) -> PeakStress {
+        let mut best = PeakStress { stress_pa: -1.0, u: 0.0, face, tension: false };
+        for piece in &self.pieces {
+            let own = piece.peak_of_face(face);
+            if own.stress_pa > best.stress_pa {
+                best = PeakStress { u: piece.info.outer(own.u), ..own };
+            }
+        }
+        best
+    }
 }
 
 /// One piece of a beam in equilibrium; places v in [0, 1] run along the piece.
@@ -445,34 +455,55 @@ impl PieceState {
         let mut best = (0.0, 0.0);
         let faces = if self.info.theory == Theory::Inextensible { 1 } else { 2 };
         for (face, values) in samples.iter().enumerate().take(faces) {
-            for i in 0..count {
-                if values[i] < 0.9 * largest {
-                    continue;
-                }
-                if values[i] > best.0 {
-                    best = (values[i], sampling.u[i]);
-                }
-                let (before, after) = (i.saturating_sub(1), (i + 1).min(count - 1));
-                if values[i] < values[before] || values[i] < values[after] {
-                    continue;
-                }
-                let stress = |u: f64| self.stress_pa(u)[face].abs();
-                if before == i || after == i {
-                    // An end: the extremum is next to it only if the stress rises inwards.
-                    let inwards = sampling.u[i] + INWARDS * (sampling.u[before] + sampling.u[after] - 2.0 * sampling.u[i]);
-                    if stress(inwards) <= values[i] {
-                        continue;
-                    }
-                }
-                let refined = roots::minimise(|u| -stress(u), sampling.u[before], sampling.u[after], PEAK_TOLERANCE);
-                if -refined.value > best.0 {
-                    best = (-refined.value, refined.x);
-                }
-            }
+            self.refine_peak(&sampling.u, (face, values), largest, &mut best);
         }
         let [left, right] = self.stress_pa(best.1);
         let face = if left.abs() > right.abs() || (left.abs() >= right.abs() && left > 0.0) { Face::Left } else { Face::Right };
         let tension = if face == Face::Left { left > 0.0 } else { right > 0.0 };
         PeakStress { stress_pa: best.0, u: best.1, face, tension }
     }
+
+    /// Replaces the best stress and its place where a face exceeds it, given its samples at ascending places.
+    fn refine_peak(&self, places: &[f64], (face, values): (usize, &[f64]), largest: f64, best: &mut (f64, f64)) {
+        let count = places.len();
+        for i in 0..count {
+            if values[i] < 0.9 * largest {
+                continue;
+            }
+            if values[i] > best.0 {
+                *best = (values[i], places[i]);
+            }
+            let (before, after) = (i.saturating_sub(1), (i + 1).min(count - 1));
+            if values[i] < values[before] || values[i] < values[after] {
+                continue;
+            }
+            let stress = |u: f64| self.stress_pa(u)[face].abs();
+            if before == i || after == i {
+                // An end: the extremum is next to it only if the stress rises inwards.
+                let inwards = places[i] + INWARDS * (places[before] + places[after] - 2.0 * places[i]);
+                if stress(inwards) <= values[i] {
+                    continue;
+                }
+            }
+            let refined = roots::minimise(|u| -stress(u), places[before], places[after], PEAK_TOLERANCE);
+            if -refined.value > best.0 {
+                *best = (-refined.value, refined.x);
+            }
+        }
+    }
+
+    fn peak_of_face(&self, face: Face) -> PeakStress {
+        let side = usize::from(face == Face::Right);
+        let places = chebyshev(self.modes_rad.len());
+        let values: Vec<f64> = places.iter().map(|u| self.stress_pa(*u)[side].abs()).collect();
+        let mut best = (0.0, 0.0);
+        self.refine_peak(&places, (side, &values), values.iter().fold(0.0, |m, v| m.max(*v)), &mut best);
+        PeakStress { stress_pa: best.0, u: best.1, face, tension: self.stress_pa(best.1)[side] > 0.0 }
+    }
+}
+
+/// Chebyshev points, more than modes, so that no extremum of their sum falls between two of them unseen.
+fn chebyshev(modes: usize) -> Vec<f64> {
+    let intervals = modes + modes / 2;
+    (0..=intervals).map(|i| 0.5 - 0.5 * maths::cos(std::f64::consts::PI * i as f64 / intervals as f64)).collect()
 }

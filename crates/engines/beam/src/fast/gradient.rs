@@ -21,7 +21,7 @@ struct Entry {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Quantity {
+pub(super) enum Quantity {
     Length,
     Bending,
     Axial,
@@ -42,7 +42,7 @@ pub(super) struct ForceGradient {
 }
 
 /// How `c_0` and the logarithm of the length follow from chord and bend; see `ChordSensitivity`.
-struct Closure {
+pub(super) struct Closure {
     angle_by_chord: [f64; 2],
     stretch_by_chord: [f64; 2],
     /// ∫ uᵏ (cos η, sin η) du.
@@ -50,7 +50,7 @@ struct Closure {
 }
 
 impl Closure {
-    fn new<const M: usize, const Q: usize, const E: usize>(
+    pub(super) fn new<const M: usize, const Q: usize, const E: usize>(
         tables: &Tables<M, Q, E>,
         beams: &Beams<Q>,
         lane: usize,
@@ -184,7 +184,7 @@ impl ForceGradient {
 
 /// What a parameter of the section changes in beam `index`; `false` if it is none. EI ∝ E w³ b, 1/EA ∝ 1/(E w b),
 /// 1/kGA ∝ (1 + ν)/(E w b).
-fn of_section(parameter: Parameter, index: usize, section: &Section, add: &mut dyn FnMut(Quantity, f64)) -> bool {
+pub(super) fn of_section(parameter: Parameter, index: usize, section: &Section, add: &mut dyn FnMut(Quantity, f64)) -> bool {
     let (of, bending, value) = match parameter {
         Parameter::Thickness(beam) => (Some(beam), 3.0, section.thickness_m),
         Parameter::AllThickness => (None, 3.0, section.thickness_m),
@@ -210,7 +210,7 @@ fn of_section(parameter: Parameter, index: usize, section: &Section, add: &mut d
 }
 
 /// What a node or a bend changes in beam `index`, which stays closed.
-fn of_shape(parameter: Parameter, index: usize, nodes: &[usize; 2], closure: &Closure, add: &mut dyn FnMut(Quantity, f64)) {
+pub(super) fn of_shape(parameter: Parameter, index: usize, nodes: &[usize; 2], closure: &Closure, add: &mut dyn FnMut(Quantity, f64)) {
     // EI/L is the one constant that changes with the length.
     let closed = |add: &mut dyn FnMut(Quantity, f64), angle: f64, stretch: f64| {
         add(Quantity::Angle(0), angle);

@@ -23,8 +23,10 @@ const STIFF: f64 = 1e-12;
 pub(crate) struct Tables<const M: usize, const Q: usize, const E: usize> {
     pub(crate) u: [f64; Q],
     pub(crate) weight: [f64; Q],
-    place: [Lane; Q],
-    bubble: [[Lane; Q]; M],
+    pub(super) place: [Lane; Q],
+    /// 2u − 1. This and the following are even or odd about the middle, as the points are: only the first half is read.
+    across: [Lane; Q],
+    pub(super) bubble: [[Lane; Q]; M],
     /// Legendre polynomials of degree M … Q − 1. That of degree Q is 0 at the points; later ones are beyond the interpolation.
     legendre: [[Lane; Q]; E],
     /// Half of 1/√(2k − 1) of the modes beyond.
@@ -40,6 +42,7 @@ impl<const M: usize, const Q: usize, const E: usize> Tables<M, Q, E> {
             u: [0.0; Q],
             weight: [0.0; Q],
             place: [zero; Q],
+            across: [zero; Q],
             bubble: [[zero; Q]; M],
             legendre: [[zero; Q]; E],
             half_root: std::array::from_fn(|k| 0.5 / root_of(M + 2 + k)),
@@ -48,6 +51,7 @@ impl<const M: usize, const Q: usize, const E: usize> Tables<M, Q, E> {
         for (q, (u, w)) in rule.nodes().iter().zip(rule.weights()).enumerate() {
             (tables.u[q], tables.weight[q]) = (*u, *w);
             tables.place[q] = Lane::splat(*u);
+            tables.across[q] = Lane::splat(2.0 * u - 1.0);
             legendre_values(2.0 * u - 1.0, &mut p);
             for k in 0..M {
                 tables.bubble[k][q] = Lane::splat((p[k + 2] - p[k]) / (2.0 * root_of(k + 2)));
@@ -61,7 +65,7 @@ impl<const M: usize, const Q: usize, const E: usize> Tables<M, Q, E> {
 
     /// Rotation of the sections at the quadrature points.
     #[inline]
-    fn rotation(&self, at: &Unknowns<M>, q: usize) -> Lane {
+    pub(super) fn rotation(&self, at: &Unknowns<M>, q: usize) -> Lane {
         let mut phi = at.ends[0] + (at.ends[1] - at.ends[0]) * self.place[q];
         for k in 0..M {
             phi += at.bubbles[k] * self.bubble[k][q];
@@ -69,14 +73,34 @@ impl<const M: usize, const Q: usize, const E: usize> Tables<M, Q, E> {
         phi
     }
 
+    /// Rotations at all points: the even and the odd part of each pair at once.
+    #[inline]
+    fn rotations(&self, at: &Unknowns<M>) -> [Lane; Q] {
+        let (mean, turn) = ((at.ends[0] + at.ends[1]) * 0.5, (at.ends[1] - at.ends[0]) * 0.5);
+        let mut out = [Lane::ZERO; Q];
+        for q in 0..Q.div_ceil(2) {
+            let (mut even, mut odd) = (mean, turn * self.across[q]);
+            for k in 0..M {
+                let part = at.bubbles[k] * self.bubble[k][q];
+                if is_even(k) {
+                    even += part;
+                } else {
+                    odd += part;
+                }
+            }
+            out[Q - 1 - q] = even - odd;
+            out[q] = if 2 * q + 1 == Q { even } else { even + odd };
+        }
+        out
+    }
+
     /// As `recover` of the general path, for the modes beyond those solved for. `load` carries the weights and −L.
     #[inline]
-    fn beyond(&self, bending: Lane, load: &[Lane; Q]) -> [Lane; E] {
+    pub(super) fn beyond(&self, bending: Lane, load: &[Lane; Q]) -> [Lane; E] {
+        let parts = Halves::new(load);
         let mut moments = [Lane::ZERO; E];
-        for (sum, row) in moments.iter_mut().zip(&self.legendre) {
-            for q in 0..Q {
-                *sum += load[q] * row[q];
-            }
+        for (j, row) in self.legendre.iter().enumerate() {
+            moments[j] = parts.sum(is_even(M + j), row);
         }
         let scale = Lane::splat(1.0) / bending;
         for k in 0..E {
@@ -85,6 +109,63 @@ impl<const M: usize, const Q: usize, const E: usize> Tables<M, Q, E> {
         }
         moments
     }
+}
+
+/// Whether bubble `k`, or the Legendre polynomial of degree `k`, is even about the middle.
+#[inline]
+const fn is_even(k: usize) -> bool {
+    k.is_multiple_of(2)
+}
+
+/// Numbers at the points as sums and differences of those on both sides of the middle, so that sums with even or odd functions take
+/// half the products.
+struct Halves<const Q: usize> {
+    even: [Lane; Q],
+    odd: [Lane; Q],
+}
+
+impl<const Q: usize> Halves<Q> {
+    #[inline]
+    fn new(points: &[Lane; Q]) -> Self {
+        let mut halves = Self { even: [Lane::ZERO; Q], odd: [Lane::ZERO; Q] };
+        for q in 0..Q / 2 {
+            halves.even[q] = points[q] + points[Q - 1 - q];
+            halves.odd[q] = points[q] - points[Q - 1 - q];
+        }
+        if !is_even(Q) {
+            halves.even[Q / 2] = points[Q / 2];
+        }
+        halves
+    }
+
+    /// The sum over all points of the product with an even or an odd function.
+    #[inline]
+    fn sum(&self, even: bool, row: &[Lane; Q]) -> Lane {
+        if even { dot::<Q>(&self.even, row, Q.div_ceil(2)) } else { dot::<Q>(&self.odd, row, Q / 2) }
+    }
+
+    #[inline]
+    fn total(&self) -> Lane {
+        total::<Q>(&self.even, Q.div_ceil(2))
+    }
+}
+
+#[inline]
+fn dot<const Q: usize>(a: &[Lane; Q], b: &[Lane; Q], count: usize) -> Lane {
+    let mut sum = a[0] * b[0];
+    for q in 1..count {
+        sum += a[q] * b[q];
+    }
+    sum
+}
+
+#[inline]
+fn total<const Q: usize>(a: &[Lane; Q], count: usize) -> Lane {
+    let mut sum = a[0];
+    for q in 1..count {
+        sum += a[q];
+    }
+    sum
 }
 
 /// Constants of four beams, dimensionless.
@@ -138,18 +219,22 @@ pub(crate) struct Condensed<const M: usize, const Q: usize> {
     /// Second and first derivatives; see [`SECOND`] and [`FIRST`]. A power of two, so that masked indices need no check.
     pub(crate) flat: [Lane; 16],
     /// L·D·Lᵀ of the bubbles: rows of L below the diagonal, 1/D on it.
-    inner: [[Lane; M]; M],
+    pub(super) inner: [[Lane; M]; M],
     /// D⁻¹L⁻¹ of the bubbles' derivatives by (`φ_A`, `φ_B`, H, V) and of their own residual.
-    scaled: [[Lane; 5]; M],
+    pub(super) scaled: [[Lane; 5]; M],
     /// Force's answer: −C⁻¹, C⁻¹·K by rotation, and its own change.
-    flexibility: [[Lane; 2]; 2],
-    by_rotation: [[Lane; 2]; 2],
+    pub(super) flexibility: [[Lane; 2]; 2],
+    pub(super) by_rotation: [[Lane; 2]; 2],
     /// C⁻¹ r: what closes the gap.
     closing: [Lane; 2],
     /// The integrands at the state that was linearised.
     pub(crate) points: Points<Q>,
     /// Negative pivots of the bubbles and of the flexibility, per lane.
     pub(crate) negative: [u32; LANES],
+    /// The smallest ratio of a pivot to the least that is safe without pivoting. Not necessarily NaN where the state is.
+    pub(crate) margin: Lane,
+    /// Largest rotation at the points.
+    pub(crate) widest: Lane,
 }
 
 /// Why four beams cannot be condensed here.
@@ -168,12 +253,26 @@ pub(crate) fn linearise<const M: usize, const Q: usize, const E: usize>(
     apart: [Lane; 2],
     out: &mut Condensed<M, Q>,
 ) -> Result<(), NeedsPivoting> {
-    evaluate(tables, beams, at, &mut out.points);
+    condense(tables, beams, at, apart, Lane::sin_cos, out);
+    if out.margin.all_above(Lane::splat(1.0)) { Ok(()) } else { Err(NeedsPivoting) }
+}
+
+/// The same with the verdict per lane, in [`Condensed::margin`]. No lane depends on the others, if none does in `sin_cos`.
+#[inline]
+pub(crate) fn condense<const M: usize, const Q: usize, const E: usize>(
+    tables: &Tables<M, Q, E>,
+    beams: &Beams<Q>,
+    at: &Unknowns<M>,
+    apart: [Lane; 2],
+    sin_cos: impl Fn(Lane) -> (Lane, Lane),
+    out: &mut Condensed<M, Q>,
+) {
+    out.widest = evaluate(tables, beams, at, sin_cos, &mut out.points);
     out.negative = [0; LANES];
     let mut outer = [[Lane::ZERO; 5]; M];
-    integrate(tables, beams, at, &out.points, &mut out.inner, &mut outer);
-    eliminate(&mut out.inner, &mut outer, &mut out.scaled, beams.bending, &mut out.negative)?;
-    let (mut second, mut first) = ends(tables, beams, at, &out.points);
+    let (mut second, mut first) = integrate(tables, beams, at, &out.points, &mut out.inner, &mut outer);
+    let smallest = eliminate(&mut out.inner, &mut outer, &mut out.scaled, &mut out.negative);
+    out.margin = smallest / (beams.bending * SMALL_PIVOT);
     for (left, right) in outer.iter().zip(&out.scaled) {
         for i in 0..4 {
             for j in 0..=i {
@@ -184,7 +283,7 @@ pub(crate) fn linearise<const M: usize, const Q: usize, const E: usize>(
     }
     first[2] += apart[0];
     first[3] += apart[1];
-    release(&second, &first, beams, at, out)
+    release(&second, &first, beams, at, out);
 }
 
 /// Integrands at the quadrature points, with the weights and −L, and the sums over them that need no trial function.
@@ -199,26 +298,31 @@ pub(crate) struct Points<const Q: usize> {
     compliance: [Lane; 3],
 }
 
+/// Fills in the points; the largest rotation at them.
 #[inline]
 fn evaluate<const M: usize, const Q: usize, const E: usize>(
     tables: &Tables<M, Q, E>,
     beams: &Beams<Q>,
     at: &Unknowns<M>,
+    sin_cos: impl Fn(Lane) -> (Lane, Lane),
     out: &mut Points<Q>,
-) {
+) -> Lane {
     let [h, v] = at.force;
     let softness = beams.axial - beams.shear;
     let (mut gap, mut compliance) = ([Lane::ZERO; 2], [Lane::ZERO; 3]);
+    let rotations = tables.rotations(at);
+    let mut widest = Lane::ZERO;
     for q in 0..Q {
-        let (sin_phi, cos_phi) = tables.rotation(at, q).sin_cos();
+        widest = widest.max(rotations[q].abs());
+        let (sin_phi, cos_phi) = sin_cos(rotations[q]);
         let (rest_cos, rest_sin) = (beams.cos[q], beams.sin[q]);
         let cos = rest_cos * cos_phi - rest_sin * sin_phi;
         let sin = rest_sin * cos_phi + rest_cos * sin_phi;
         let w = beams.weight[q];
-        let (axial, across) = (h * cos + v * sin, v * cos - h * sin);
         gap[0] += w * (cos - rest_cos);
         gap[1] += w * (sin - rest_sin);
         if beams.soft {
+            let (axial, across) = (h * cos + v * sin, v * cos - h * sin);
             let q_load = across + softness * axial * across;
             let q_slope = softness * (across * across - axial * axial) - axial;
             let q_h = softness * (cos * across - axial * sin) - sin;
@@ -231,13 +335,16 @@ fn evaluate<const M: usize, const Q: usize, const E: usize>(
             compliance[2] += w * (beams.axial * sin * sin + beams.shear * cos * cos);
             (out.load[q], out.slope[q], out.by_h[q], out.by_v[q]) = (w * q_load, w * q_slope, w * q_h, w * q_v);
         } else {
-            (out.load[q], out.slope[q], out.by_h[q], out.by_v[q]) = (w * across, -(w * axial), -(w * sin), w * cos);
+            let (by_h, by_v) = (-(w * sin), w * cos);
+            (out.load[q], out.slope[q], out.by_h[q], out.by_v[q]) = (h * by_h + v * by_v, v * by_h - h * by_v, by_h, by_v);
         }
     }
     (out.gap, out.compliance) = (gap, compliance);
+    widest
 }
 
-/// Bubbles by bubbles, lower triangle, and by `φ_A`, `φ_B`, H, V and their residual.
+/// Second derivatives: bubbles by bubbles, lower triangle, in `inner`; by `φ_A`, `φ_B`, H, V and their residual in `outer`. Returns the
+/// second derivatives by (`φ_A`, `φ_B`, H, V), lower triangle, and the first, with the bubbles held.
 #[inline]
 fn integrate<const M: usize, const Q: usize, const E: usize>(
     tables: &Tables<M, Q, E>,
@@ -246,77 +353,68 @@ fn integrate<const M: usize, const Q: usize, const E: usize>(
     points: &Points<Q>,
     inner: &mut [[Lane; M]; M],
     outer: &mut [[Lane; 5]; M],
-) {
-    let zero = Lane::ZERO;
-    let mut weighted = [zero; Q];
+) -> ([[Lane; 4]; 4], [Lane; 4]) {
+    let ([h, v], half, b, zero) = (at.force, Q / 2, beams.bending, Lane::ZERO);
+    let slope = Halves::new(&points.slope);
+    let (by_h, by_v) = (Halves::new(&points.by_h), Halves::new(&points.by_v));
+    // Where nothing stretches, the load is a combination of the other two, and so are its sums.
+    let load = if beams.soft { Some(Halves::new(&points.load)) } else { None };
+    let loaded = |even: bool, row: &[Lane; Q], by_h: Lane, by_v: Lane| match &load {
+        Some(load) => load.sum(even, row),
+        None => h * by_h + v * by_v,
+    };
+    let (mut even, mut odd) = ([zero; Q], [zero; Q]);
     for k in 0..M {
-        let b = &tables.bubble[k];
-        let (mut all, mut end, mut by_h, mut by_v, mut residual) = (zero, zero, zero, zero, zero);
-        for q in 0..Q {
-            let s = points.slope[q] * b[q];
-            weighted[q] = s;
-            all += s;
-            end += s * tables.place[q];
-            by_h += points.by_h[q] * b[q];
-            by_v += points.by_v[q] * b[q];
-            residual += points.load[q] * b[q];
+        let (own, is_even) = (&tables.bubble[k], is_even(k));
+        for q in 0..half {
+            even[q] = slope.even[q] * own[q];
+            odd[q] = slope.odd[q] * own[q];
         }
-        outer[k] = [all - end, end, by_h, by_v, residual + beams.bending * at.bubbles[k]];
+        if 2 * half < Q {
+            even[half] = slope.even[half] * own[half];
+        }
+        // The bubble's own parity decides which products survive.
+        let (all, lean) = if is_even {
+            (total::<Q>(&even, Q.div_ceil(2)), dot::<Q>(&odd, &tables.across, half))
+        } else {
+            (total::<Q>(&odd, half), dot::<Q>(&even, &tables.across, half))
+        };
+        let (h_sum, v_sum) = (by_h.sum(is_even, own), by_v.sum(is_even, own));
+        outer[k] = [(all - lean) * 0.5, (all + lean) * 0.5, h_sum, v_sum, loaded(is_even, own, h_sum, v_sum) + b * at.bubbles[k]];
         for j in 0..=k {
             let other = &tables.bubble[j];
-            let mut sum = zero;
-            for q in 0..Q {
-                sum += weighted[q] * other[q];
-            }
-            inner[k][j] = sum;
+            inner[k][j] = if (k + j).is_multiple_of(2) { dot::<Q>(&even, other, Q.div_ceil(2)) } else { dot::<Q>(&odd, other, half) };
         }
-        inner[k][k] += beams.bending;
+        inner[k][k] += b;
     }
-}
-
-/// Second derivatives by (`φ_A`, `φ_B`, H, V), lower triangle, and the first, with the bubbles held.
-#[inline]
-fn ends<const M: usize, const Q: usize, const E: usize>(
-    tables: &Tables<M, Q, E>,
-    beams: &Beams<Q>,
-    at: &Unknowns<M>,
-    points: &Points<Q>,
-) -> ([[Lane; 4]; 4], [Lane; 4]) {
-    let zero = Lane::ZERO;
-    let (mut slope, mut by_h, mut by_v, mut load) = ([zero; 3], [zero; 2], [zero; 2], [zero; 2]);
-    for q in 0..Q {
-        let u = tables.place[q];
-        let s = points.slope[q] * u;
-        slope[0] += points.slope[q];
-        slope[1] += s;
-        slope[2] += s * u;
-        by_h[0] += points.by_h[q];
-        by_h[1] += points.by_h[q] * u;
-        by_v[0] += points.by_v[q];
-        by_v[1] += points.by_v[q] * u;
-        load[0] += points.load[q];
-        load[1] += points.load[q] * u;
+    // Sums with 1, 2u − 1 and its square.
+    let (mut s, x) = ([slope.total(), slope.sum(false, &tables.across), zero], &tables.across);
+    for q in 0..half {
+        s[2] += slope.even[q] * x[q] * x[q];
     }
-    let (b, moment) = (beams.bending, beams.bending * (at.ends[1] - at.ends[0]));
+    let (h0, h1, v0, v1) = (by_h.total(), by_h.sum(false, x), by_v.total(), by_v.sum(false, x));
+    let l0 = if let Some(load) = &load { load.total() } else { h * h0 + v * v0 };
+    let l1 = loaded(false, x, h1, v1);
+    let moment = b * (at.ends[1] - at.ends[0]);
     let mut second = [[zero; 4]; 4];
-    second[0][0] = slope[0] - slope[1] * 2.0 + slope[2] + b;
-    second[1][0] = slope[1] - slope[2] - b;
-    second[1][1] = slope[2] + b;
-    second[2] = [by_h[0] - by_h[1], by_h[1], points.compliance[0], zero];
-    second[3] = [by_v[0] - by_v[1], by_v[1], points.compliance[1], points.compliance[2]];
-    (second, [load[0] - load[1] - moment, load[1] + moment, points.gap[0], points.gap[1]])
+    second[0][0] = (s[0] - s[1] * 2.0 + s[2]) * 0.25 + b;
+    second[1][0] = (s[0] - s[2]) * 0.25 - b;
+    second[1][1] = (s[0] + s[1] * 2.0 + s[2]) * 0.25 + b;
+    second[2] = [(h0 - h1) * 0.5, (h0 + h1) * 0.5, points.compliance[0], zero];
+    second[3] = [(v0 - v1) * 0.5, (v0 + v1) * 0.5, points.compliance[1], points.compliance[2]];
+    (second, [(l0 - l1) * 0.5 - moment, (l0 + l1) * 0.5 + moment, points.gap[0], points.gap[1]])
 }
 
 /// L·D·Lᵀ of the bubbles in place, and the first half of the solution for five right-hand sides: `outer` becomes L⁻¹ of itself, `scaled`
-/// D⁻¹ of that. Counts negative pivots.
+/// D⁻¹ of that. Counts negative pivots; returns the size of the smallest pivot.
 #[inline]
 fn eliminate<const M: usize>(
     inner: &mut [[Lane; M]; M],
     outer: &mut [[Lane; 5]; M],
     scaled: &mut [[Lane; 5]; M],
-    bending: Lane,
     negative: &mut [u32; LANES],
-) -> Result<(), NeedsPivoting> {
+) -> Lane {
+    let mut smallest = Lane::splat(f64::INFINITY);
     for row in 0..M {
         for k in 0..row {
             let mut sum = inner[row][k];
@@ -335,9 +433,7 @@ fn eliminate<const M: usize>(
                 right[c] -= factor * outer[k][c];
             }
         }
-        if !pivot.abs().all_above(bending * SMALL_PIVOT) {
-            return Err(NeedsPivoting);
-        }
+        smallest = smallest.min(pivot.abs());
         for (count, p) in negative.iter_mut().zip(pivot.0) {
             *count += u32::from(p < 0.0);
         }
@@ -348,7 +444,7 @@ fn eliminate<const M: usize>(
             scaled[row][c] = right[c] * inverse;
         }
     }
-    Ok(())
+    smallest
 }
 
 /// Eliminates the force: the flexibility block C is negative definite for a stable beam.
@@ -359,16 +455,12 @@ fn release<const M: usize, const Q: usize>(
     beams: &Beams<Q>,
     at: &Unknowns<M>,
     out: &mut Condensed<M, Q>,
-) -> Result<(), NeedsPivoting> {
+) {
     let (c00, c01, c11) = (s[2][2], s[3][2], s[3][3]);
     let determinant = c00 * c11 - c01 * c01;
     let size = beams.length * beams.length / beams.bending;
-    let regular = determinant.abs().all_above((c00 * c11).abs() * SMALL_FLEXIBILITY)
-        && c00.abs().all_above(size * STIFF)
-        && c11.abs().all_above(size * STIFF);
-    if !regular {
-        return Err(NeedsPivoting);
-    }
+    let flexible = (determinant.abs() / ((c00 * c11).abs() * SMALL_FLEXIBILITY)).min(c00.abs().min(c11.abs()) / (size * STIFF));
+    out.margin = out.margin.min(flexible);
     for (lane, count) in out.negative.iter_mut().enumerate() {
         // Inertia of a symmetric 2 × 2 block.
         *count += if determinant.0[lane] < 0.0 {
@@ -412,7 +504,6 @@ fn release<const M: usize, const Q: usize>(
         Lane::ZERO,
     ];
     (out.flexibility, out.by_rotation, out.closing) = (f, by, closing);
-    Ok(())
 }
 
 impl<const M: usize, const Q: usize> Default for Condensed<M, Q> {
@@ -427,6 +518,8 @@ impl<const M: usize, const Q: usize> Default for Condensed<M, Q> {
             closing: two,
             points: Points { load: points, slope: points, by_h: points, by_v: points, gap: two, compliance: [zero; 3] },
             negative: [0; LANES],
+            margin: zero,
+            widest: zero,
         }
     }
 }
@@ -460,9 +553,9 @@ impl<const M: usize, const Q: usize> Condensed<M, Q> {
     #[inline]
     pub(crate) fn beyond<const E: usize>(&self, tables: &Tables<M, Q, E>, bending: Lane, change: &Unknowns<M>) -> ([Lane; E], [Lane; E]) {
         let p = &self.points;
-        let mut along = [Lane::ZERO; Q];
+        let (mut along, rotations) = ([Lane::ZERO; Q], tables.rotations(change));
         for q in 0..Q {
-            along[q] = p.slope[q] * tables.rotation(change, q) + p.by_h[q] * change.force[0] + p.by_v[q] * change.force[1];
+            along[q] = p.slope[q] * rotations[q] + p.by_h[q] * change.force[0] + p.by_v[q] * change.force[1];
         }
         (tables.beyond(bending, &p.load), tables.beyond(bending, &along))
     }

@@ -1,4 +1,4 @@
-//! Four beams side by side: arithmetic on four doubles at once, written so that the compiler turns it into vector instructions.
+//! Four beams, or four designs, side by side: arithmetic on four doubles at once, written so that the compiler turns it into vector instructions.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -7,7 +7,7 @@ use forcewright_base::maths;
 /// Beams per lane group.
 pub(crate) const LANES: usize = 4;
 
-/// One number of each of four beams. Aligned, so that arithmetic can take it from memory without a load.
+/// One number of each of four beams, or of one beam of four designs. Aligned, so that arithmetic can take it from memory without a load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub(crate) struct Lane(pub(crate) [f64; LANES]);
@@ -84,6 +84,25 @@ impl Lane {
         Self([pick(a[0], b[0]), pick(a[1], b[1]), pick(a[2], b[2]), pick(a[3], b[3])])
     }
 
+    /// Elementwise smaller one; a NaN in `other` is kept.
+    #[inline]
+    pub(crate) fn min(self, other: Self) -> Self {
+        let (a, b) = (self.0, other.0);
+        let pick = |a: f64, b: f64| if a < b { a } else { b };
+        Self([pick(a[0], b[0]), pick(a[1], b[1]), pick(a[2], b[2]), pick(a[3], b[3])])
+    }
+
+    /// `value` in the lanes in which `a` exceeds `b`, `other` elsewhere.
+    #[inline]
+    pub(crate) fn where_above(a: Self, b: Self, value: Self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| if a.0[i] > b.0[i] { value.0[i] } else { other.0[i] }))
+    }
+
+    #[inline]
+    pub(crate) fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
     /// Whether every lane exceeds a limit; NaN does not.
     #[inline]
     pub(crate) fn all_above(self, limit: Self) -> bool {
@@ -106,6 +125,16 @@ impl Lane {
         if a <= SMALL && b <= SMALL && c <= SMALL && d <= SMALL { series::<7>(self) } else { series::<9>(self) }
     }
 
+    /// Sine and cosine by a series of fixed length, so that no lane depends on the others: wrong by at most 1e-9 up to
+    /// [`Lane::MODERATE`] rad.
+    #[inline]
+    pub(crate) fn sin_cos_moderate(self) -> (Self, Self) {
+        series::<6>(self)
+    }
+
+    /// See [`Lane::sin_cos_moderate`].
+    pub(crate) const MODERATE: f64 = 2.4;
+
     /// Sine and cosine of angles of any size, wrong by at most 1e-15 up to 50 rad. Takes away the nearest multiple of π, which changes
     /// no more than both signs.
     pub(crate) fn sin_cos_reduced(self) -> (Self, Self) {
@@ -114,6 +143,12 @@ impl Lane {
             let pairs = self.0.map(maths::sin_cos);
             return (Self(pairs.map(|p| p.0)), Self(pairs.map(|p| p.1)));
         }
+        self.sin_cos_turned()
+    }
+
+    /// The same for angles known to be that small; no lane depends on the others.
+    #[inline]
+    pub(crate) fn sin_cos_turned(self) -> (Self, Self) {
         let turns = nearest(self * std::f64::consts::FRAC_1_PI);
         let rest = self - turns * PI_HIGH - turns * PI_LOW;
         let odd = turns - nearest(turns * 0.5) * 2.0;
@@ -197,6 +232,20 @@ mod tests {
         }
         // Doubling doubles the rounding of the half angle.
         assert!(worst < 1e-15, "{worst:e}");
+    }
+
+    #[test]
+    fn the_series_of_fixed_length_is_as_exact_as_it_says() {
+        let mut worst = 0.0_f64;
+        for i in 0..=2400 {
+            let x = 1e-3 * f64::from(i);
+            let angles = [x, -x, 0.5 * x, Lane::MODERATE];
+            let (sin, cos) = Lane(angles).sin_cos_moderate();
+            for (lane, x) in angles.into_iter().enumerate() {
+                worst = worst.max((sin.0[lane] - maths::sin(x)).abs()).max((cos.0[lane] - maths::cos(x)).abs());
+            }
+        }
+        assert!(worst < 1e-9, "{worst:e}");
     }
 
     #[test]

@@ -7,13 +7,20 @@
 //! one iteration at a higher one. Whatever is not safe here (a straight inextensible beam at rest, a fold, a load or rotation as
 //! drive, an unresolved shape) is handed to the general path.
 
+mod batch;
 mod curve;
 mod gradient;
 mod hermite;
 mod kernel;
 mod lanes;
+mod line;
+mod mixed;
 mod network;
+mod outputs;
+mod states;
 mod stress;
 mod walk;
 
+pub use batch::{BatchSolver, DesignError, Variant};
 pub use curve::{CurveSolver, Response};
+pub use outputs::CurveStates;

@@ -6,21 +6,21 @@ use crate::model::Model;
 
 /// Adds `factor` times one number of a group of beams to an entry of the network.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
-    target: usize,
+pub(crate) struct Entry {
+    pub(crate) target: usize,
     /// Place among the numbers of the group, and lane.
-    source: usize,
-    lane: usize,
-    factor: f64,
+    pub(crate) source: usize,
+    pub(crate) lane: usize,
+    pub(crate) factor: f64,
 }
 
 /// How one group of beams enters the network: its second and first derivatives, and the motions of its ends.
 #[derive(Clone, Debug, Default)]
-struct Plan {
-    matrix: Vec<Entry>,
-    residual: Vec<Entry>,
+pub(crate) struct Plan {
+    pub(crate) matrix: Vec<Entry>,
+    pub(crate) residual: Vec<Entry>,
     /// From an unknown to a motion (`φ_A`, `φ_B`, x, y): the other way.
-    motion: Vec<Entry>,
+    pub(crate) motion: Vec<Entry>,
     beams: usize,
 }
 
@@ -28,7 +28,7 @@ struct Plan {
 #[derive(Debug, Default)]
 pub(crate) struct Net {
     pub(crate) unknowns: usize,
-    plans: Vec<Plan>,
+    pub(crate) plans: Vec<Plan>,
     /// Weight of each unknown in distances: 1 for rotations, more for displacements.
     pub(crate) weights: Vec<f64>,
     /// Rows, the lower triangle.
@@ -107,10 +107,39 @@ impl Net {
     pub(crate) fn ends(&self, group: usize, x: &[f64]) -> ([Lane; 2], [Lane; 2]) {
         let mut motion = [Lane::ZERO; 4];
         for e in &self.plans[group].motion {
-            motion[e.source & 3].0[e.lane & 3] += e.factor * x[e.target];
+            motion[e.source & 3].0[e.lane & (LANES - 1)] += e.factor * x[e.target];
         }
         let [a, b, x, y] = motion;
         ([a, b], [x, y])
+    }
+
+    /// Motion of a node with the given translations, in units of length.
+    pub(crate) fn displacement(&self, translations: &[(usize, [f64; 2])], x: &[f64]) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for (i, direction) in translations {
+            let moved = self.rotation(Some(*i), x);
+            sum = [sum[0] + direction[0] * moved, sum[1] + direction[1] * moved];
+        }
+        sum
+    }
+
+    /// Value of an unknown of the model, which may not exist or be held by a support.
+    pub(crate) fn rotation(&self, unknown: Option<usize>, x: &[f64]) -> f64 {
+        unknown.and_then(|i| self.place.get(i).copied().flatten()).map_or(0.0, |i| x[i])
+    }
+
+    /// Adds first derivatives of the four beams of a group by (`φ_A`, `φ_B`, x, y) to a column of `rhs`, a row per unknown.
+    pub(crate) fn scatter(&self, group: usize, first: &[Lane; 4], rhs: &mut [f64], (column, columns): (usize, usize)) {
+        for e in &self.plans[group].residual {
+            rhs[e.target * columns + column] += e.factor * first[(e.source - FIRST[0]) & 3].0[e.lane & 3];
+        }
+    }
+
+    /// The matrix of the unknowns that are solved for, the driven one left out, as the beams added it: both triangles.
+    pub(crate) fn free_matrix(&self, out: &mut Vec<f64>) {
+        let (n, free) = (self.unknowns, self.unknowns - 1);
+        out.clear();
+        out.extend((0..free).flat_map(|row| (0..free).map(move |column| self.matrix[row.max(column) * n + row.min(column)])));
     }
 
     pub(crate) fn clear(&mut self) {
@@ -123,10 +152,10 @@ impl Net {
     pub(crate) fn add<const M: usize, const Q: usize>(&mut self, group: usize, beams: &Condensed<M, Q>) {
         let plan = &self.plans[group];
         for e in &plan.matrix {
-            self.matrix[e.target] += e.factor * beams.flat[e.source & 15].0[e.lane & 3];
+            self.matrix[e.target] += e.factor * beams.flat[e.source & 15].0[e.lane & (LANES - 1)];
         }
         for e in &plan.residual {
-            self.residual[e.target] += e.factor * beams.flat[e.source & 15].0[e.lane & 3];
+            self.residual[e.target] += e.factor * beams.flat[e.source & 15].0[e.lane & (LANES - 1)];
         }
         self.instability += beams.negative.iter().take(plan.beams).map(|n| i64::from(*n) - 2).sum::<i64>();
     }
@@ -231,9 +260,12 @@ impl Plan {
     }
 }
 
+/// Least size of a pivot, relative to what it started from.
+pub(crate) const SMALL_PIVOT: f64 = 1e-9;
+
 /// Whether a pivot is safe to divide by, given what it started from. Written so that NaN is not.
 fn safe(pivot: f64, scale: f64) -> bool {
-    pivot.abs() > 1e-9 * scale && pivot.is_finite()
+    pivot.abs() > SMALL_PIVOT * scale && pivot.is_finite()
 }
 
 /// Solves for the right-hand sides with the leading block of a symmetric matrix of `n` columns, of which the lower triangle is read.

@@ -14,7 +14,6 @@ use super::lanes::{LANES, Lane};
 use super::walk::Node;
 use crate::element::root_of;
 use crate::model::Model;
-use crate::shape::Shape;
 
 /// The maximum inside a beam is looked for at a station if those of the states around it are, interpolated, at least this part of the largest stress.
 const CLOSE: f64 = 0.9;
@@ -72,15 +71,41 @@ pub(crate) struct StressModel {
     /// Pa per rad of slope.
     pub(crate) bending: Lane,
     /// Pa per unit of force.
-    axial: Lane,
+    pub(crate) axial: Lane,
     /// Direction at rest at both ends, and its slope by u.
     cos: [Lane; 2],
     sin: [Lane; 2],
-    turn: [Lane; 2],
-    soft: bool,
+    pub(crate) turn: [Lane; 2],
+    pub(crate) soft: bool,
 }
 
 impl StressModel {
+    /// One beam of four designs with these factors. Without an axial one the angle, of which `direction` is added to that of the
+    /// coefficients as cosine and sine, does not matter.
+    pub(crate) fn in_lanes(bending: Lane, axial: Lane, angle_rad: &[Lane], direction: [Lane; 2]) -> Self {
+        let mut own = Self { bending, axial, soft: !angle_rad.is_empty(), ..Self::default() };
+        if own.soft {
+            let start = angle_rad[0];
+            let end = angle_rad.iter().rev().fold(Lane::ZERO, |sum, c| sum + *c);
+            own.turn[0] = angle_rad.get(1).copied().unwrap_or_default();
+            own.turn[1] = angle_rad.iter().enumerate().skip(1).fold(Lane::ZERO, |sum, (k, c)| sum + *c * k as f64);
+            for (i, angle) in [start, end].into_iter().enumerate() {
+                let (sin, cos) = angle.sin_cos_turned();
+                (own.cos[i], own.sin[i]) = (direction[0] * cos - direction[1] * sin, direction[1] * cos + direction[0] * sin);
+            }
+        }
+        own
+    }
+
+    /// Force along the beam at an end, and its derivative, given rotation and force with theirs.
+    #[inline]
+    pub(crate) fn axial_force(&self, end: usize, (phi, d_phi): (Lane, Lane), ([h, v], [dh, dv]): ([Lane; 2], [Lane; 2])) -> (Lane, Lane) {
+        let (sin_phi, cos_phi) = phi.sin_cos_moderate();
+        let cos = self.cos[end] * cos_phi - self.sin[end] * sin_phi;
+        let sin = self.sin[end] * cos_phi + self.cos[end] * sin_phi;
+        (h * cos + v * sin, dh * cos + dv * sin + (v * cos - h * sin) * d_phi)
+    }
+
     /// For all groups of beams.
     pub(crate) fn prepare(model: &Model, out: &mut Vec<Self>) {
         out.clear();
@@ -126,20 +151,21 @@ impl StressModel {
 }
 
 /// One beam between two states.
-struct OneBeam<'a, const M: usize, const E: usize> {
-    ends: [f64; 2],
-    force: [f64; 2],
-    bubbles: [f64; M],
-    beyond: [f64; E],
+pub(crate) struct OneBeam<'a, const M: usize, const E: usize> {
+    pub(crate) ends: [f64; 2],
+    pub(crate) force: [f64; 2],
+    pub(crate) bubbles: [f64; M],
+    pub(crate) beyond: [f64; E],
     /// Pa per rad of slope, Pa per unit of force.
-    factors: [f64; 2],
-    shape: &'a Shape,
+    pub(crate) factors: [f64; 2],
+    /// Coefficients of the angle at rest; not used where the second factor is 0.
+    pub(crate) angle_rad: &'a [f64],
 }
 
 impl<'a, const M: usize, const E: usize> OneBeam<'a, M, E> {
     /// Beam `lane` of a group.
-    fn new(nodes: &[Node<M, E>], hermite: &Hermite, (group, lane): (usize, usize), factors: [f64; 2], shape: &'a Shape) -> Self {
-        let mut beam = Self { ends: [0.0; 2], force: [0.0; 2], bubbles: [0.0; M], beyond: [0.0; E], factors, shape };
+    fn new(nodes: &[Node<M, E>], hermite: &Hermite, (group, lane): (usize, usize), factors: [f64; 2], angle_rad: &'a [f64]) -> Self {
+        let mut beam = Self { ends: [0.0; 2], force: [0.0; 2], bubbles: [0.0; M], beyond: [0.0; E], factors, angle_rad };
         for (i, [a, b]) in hermite.weights() {
             let from = &nodes[i].groups[group];
             for i in 0..2 {
@@ -156,8 +182,9 @@ impl<'a, const M: usize, const E: usize> OneBeam<'a, M, E> {
         beam
     }
 
-    /// Largest stress of both faces at a place, its slope and, from bending alone, its second derivative.
-    fn stress(&self, u: f64) -> [f64; 3] {
+    /// Rotation at a place, and its slope with two derivatives by 2u − 1.
+    #[inline]
+    fn field(&self, u: f64) -> [f64; 4] {
         let x = 2.0 * u - 1.0;
         let turn = self.ends[1] - self.ends[0];
         let (mut phi, mut slope, mut first, mut second) = (self.ends[0] + turn * u, turn, 0.0, 0.0);
@@ -172,24 +199,52 @@ impl<'a, const M: usize, const E: usize> OneBeam<'a, M, E> {
             slope += scaled * here[0];
             first += scaled * here[1];
             second += scaled * here[2];
-            phi += scaled * (next[0] - before[0]) * (0.5 / odd);
+            phi += scaled * (next[0] - before[0]) * HALVES[k];
             (before, here) = (here, next);
         }
+        [phi, slope, first, second]
+    }
+
+    /// Largest stress of both faces at a place, its slope and, from bending alone, its second derivative.
+    pub(crate) fn stress(&self, u: f64) -> [f64; 3] {
+        let [stress, slope, bend, _] = self.stress_with_side(u);
+        [stress, slope, bend]
+    }
+
+    /// The same with the slope of the rotation, the sign of which tells the face.
+    pub(crate) fn stress_with_side(&self, u: f64) -> [f64; 4] {
+        let [phi, slope, first, second] = self.field(u);
         let sign = self.factors[0].copysign(slope);
-        let mut out = [sign * slope, 2.0 * sign * first, 4.0 * sign * second];
+        let mut out = [sign * slope, 2.0 * sign * first, 4.0 * sign * second, slope];
         if self.factors[1] > 0.0 {
-            let (sin, cos) = maths::sin_cos(self.shape.angle_at(u) + phi);
-            let axial = self.force[0] * cos + self.force[1] * sin;
-            let across = self.force[1] * cos - self.force[0] * sin;
-            let factor = self.factors[1].copysign(axial);
-            out[0] += factor * axial;
-            out[1] += factor * across * (self.shape.slope_at(u) + slope);
+            let (along, across) = self.internal_force(u, phi);
+            let factor = self.factors[1].copysign(along);
+            out[0] += factor * along;
+            out[1] += factor * across * (slope_at(self.angle_rad, u) + slope);
         }
         out
     }
 
+    /// Force along and across the beam at a place with that rotation.
+    fn internal_force(&self, u: f64, phi: f64) -> (f64, f64) {
+        let (sin, cos) = maths::sin_cos(angle_at(self.angle_rad, u) + phi);
+        (self.force[0] * cos + self.force[1] * sin, self.force[1] * cos - self.force[0] * sin)
+    }
+
+    /// Change of [`OneBeam::stress`] at a place along a change of the beam.
+    pub(crate) fn stress_by(&self, by: &Self, u: f64) -> f64 {
+        let ([phi, slope, ..], [d_phi, d_slope, ..]) = (self.field(u), by.field(u));
+        let mut change = self.factors[0].copysign(slope) * d_slope;
+        if self.factors[1] > 0.0 {
+            let (along, across) = self.internal_force(u, phi);
+            let (d_along, _) = by.internal_force(u, phi);
+            change += self.factors[1].copysign(along) * (d_along + across * d_phi);
+        }
+        change
+    }
+
     /// The maximum next to a place, by Newton's method between two others; or less, if that is below `floor`.
-    fn maximum(&self, start: f64, (low, high): (f64, f64), tolerance: f64, floor: f64) -> f64 {
+    pub(crate) fn maximum(&self, start: f64, (low, high): (f64, f64), tolerance: f64, floor: f64) -> f64 {
         let (mut at, mut best) = (start, 0.0_f64);
         for _ in 0..MOST_ITERATIONS {
             let [stress, slope, bend] = self.stress(at);
@@ -208,15 +263,25 @@ impl<'a, const M: usize, const E: usize> OneBeam<'a, M, E> {
     }
 }
 
+fn angle_at(angle_rad: &[f64], u: f64) -> f64 {
+    angle_rad.iter().rev().fold(0.0, |sum, c| sum * u + c)
+}
+
+fn slope_at(angle_rad: &[f64], u: f64) -> f64 {
+    angle_rad.iter().enumerate().skip(1).rev().fold(0.0, |sum, (k, c)| sum * u + k as f64 * c)
+}
+
 /// Most modes of any resolution.
-const MODES: usize = 24;
+pub(super) const MODES: usize = 24;
 /// √(2k − 1) and 1/k of degree k = 2, 3, …
-const ROOTS: [f64; MODES] = tables().0;
-const INVERSES: [f64; MODES] = tables().1;
+pub(super) const ROOTS: [f64; MODES] = tables().0;
+pub(super) const INVERSES: [f64; MODES] = tables().1;
+/// Half of 1/(2k − 1).
+const HALVES: [f64; MODES] = tables().2;
 
 /// Newton's method for the roots: there is no square root at compile time.
-const fn tables() -> ([f64; MODES], [f64; MODES]) {
-    let (mut roots, mut inverses) = ([0.0; MODES], [0.0; MODES]);
+const fn tables() -> ([f64; MODES], [f64; MODES], [f64; MODES]) {
+    let (mut roots, mut inverses, mut halves) = ([0.0; MODES], [0.0; MODES], [0.0; MODES]);
     let mut k = 0;
     while k < MODES {
         let degree = (k + 2) as f64;
@@ -229,9 +294,10 @@ const fn tables() -> ([f64; MODES], [f64; MODES]) {
         }
         roots[k] = root;
         inverses[k] = 1.0 / degree;
+        halves[k] = 0.5 / square;
         k += 1;
     }
-    (roots, inverses)
+    (roots, inverses, halves)
 }
 
 impl<const M: usize, const E: usize> Sampling<M, E> {
@@ -364,7 +430,7 @@ impl<const M: usize, const E: usize> Sampling<M, E> {
                 continue;
             }
             let factors = [stress[g].bending.0[lane], stress[g].axial.0[lane]];
-            let one = OneBeam::new(nodes, hermite, (g, lane), factors, &b.info.shape);
+            let one = OneBeam::new(nodes, hermite, (g, lane), factors, b.info.shape.angle_rad());
             let value = self.inside(places, &one, tolerance, best.1);
             if value > best.1 {
                 best = (beam, value);

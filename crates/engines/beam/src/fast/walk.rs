@@ -14,7 +14,7 @@ use crate::network::Network;
 /// Largest distance between prediction and solution, rad, as in the general path.
 const LARGEST_CORRECTION: f64 = 0.02;
 /// A displacement counts this many times as much as a rotation.
-const TRAVEL_WEIGHT: f64 = 6.0;
+pub(super) const TRAVEL_WEIGHT: f64 = 6.0;
 /// Largest change of a rotation in one step, rad.
 const LARGEST_TURN: f64 = 0.4;
 const MOST_ITERATIONS: usize = 6;
@@ -89,9 +89,9 @@ pub(super) struct Walker<const M: usize, const Q: usize, const E: usize> {
     /// The first `controls.len()` are states of this walk.
     pub(super) nodes: Vec<Node<M, E>>,
     pub(super) controls: Vec<f64>,
-    hermite: Hermite,
+    pub(super) hermite: Hermite,
     stress_hermite: Hermite,
-    x: Vec<f64>,
+    pub(super) x: Vec<f64>,
     pub(super) inner: Vec<Unknowns<M>>,
     angle: Vec<Lane>,
 }
@@ -304,6 +304,11 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
     fn predict(&mut self, target: f64, projection: f64, states: usize) {
         self.hermite.reset(false);
         self.hermite.last(&self.controls, states);
+        self.interpolate(target, projection);
+    }
+
+    /// The unknowns at a control from the states that the interpolation uses.
+    pub(super) fn interpolate(&mut self, target: f64, projection: f64) {
         self.hermite.place(target);
         self.x.fill(0.0);
         self.inner.fill(Unknowns::default());
@@ -323,7 +328,7 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
     }
 
     /// One Newton iteration from the current state, which it corrects.
-    fn iterate(&mut self, counters: &mut Counters) -> Result<(), GiveUp> {
+    pub(super) fn iterate(&mut self, counters: &mut Counters) -> Result<(), GiveUp> {
         counters.newton_iterations += 1;
         self.linearise(counters)?;
         for (x, c) in self.x.iter_mut().zip(&self.net.change) {
@@ -375,7 +380,7 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
     }
 
     /// Weighted size of a change of the network's unknowns.
-    fn size(&self, change: &[f64], divisor: f64) -> f64 {
+    pub(super) fn size(&self, change: &[f64], divisor: f64) -> f64 {
         let sizes = change.iter().zip(&self.net.weights).map(|(c, w)| (c * w).abs());
         // Keeps NaN.
         sizes.fold(0.0, |m: f64, s| if s > m || s.is_nan() { s } else { m }) / divisor.abs()

@@ -17,7 +17,7 @@ use crate::{
     network::is_zero,
     overlap::Zones,
     path::Path,
-    state::{BeamState, Face, Point},
+    state::{BeamState, Face, PeakStress, Point},
 };
 
 /// Computes gradients at points of one path; see [`Path::gradients`].
@@ -134,6 +134,8 @@ impl Path {
     }
 }
 
+/// Axes closer than this part of the unit of length cross: their distance has no derivative.
+pub(crate) const NO_DISTANCE: f64 = 1e-9;
 /// A Newton step from a point of the path, rad and units of length, is below this.
 const LARGEST_RESIDUE: f64 = 1e-5;
 
@@ -148,6 +150,11 @@ impl<'p> Gradients<'p> {
     /// # Errors
     /// [`GradientError`] if an output names what does not exist, the point is not of this path, or it is a limit point.
     pub fn at(&mut self, point: &Point, outputs: &[Output]) -> Result<Vec<Gradient>, GradientError> {
+        Ok(self.with_rates(point, outputs)?.into_iter().map(|(gradient, _)| gradient).collect())
+    }
+
+    /// Gradients, and derivatives by the control along the path.
+    pub(super) fn with_rates(&mut self, point: &Point, outputs: &[Output]) -> Result<Vec<(Gradient, f64)>, GradientError> {
         let resolution = self.path.resolution_of(point).ok_or(GradientError::ForeignPoint)?;
         outputs.iter().try_for_each(|output| self.check(output))?;
         let elsewhere = !std::ptr::eq(resolution, self.stage.resolution);
@@ -161,7 +168,7 @@ impl<'p> Gradients<'p> {
         gradients
     }
 
-    fn at_own(&mut self, point: &Point, outputs: &[Output]) -> Result<Vec<Gradient>, GradientError> {
+    fn at_own(&mut self, point: &Point, outputs: &[Output]) -> Result<Vec<(Gradient, f64)>, GradientError> {
         self.stage.linearise(point)?;
         let model = self.model;
         let state = std::mem::take(&mut self.stage.state);
@@ -179,7 +186,12 @@ impl<'p> Gradients<'p> {
             return [first, second].into_iter().try_for_each(|(beam, u)| self.check(&Output::Position { beam, u, axis: Axis::X }));
         }
         match *output {
-            Output::Stress { beam, .. } | Output::PeakStress { beam: Some(beam) } | Output::Position { beam, .. } if beam >= beams => {
+            Output::Stress { beam, .. }
+            | Output::PeakStress { beam: Some(beam) }
+            | Output::FacePeakStress { beam, .. }
+            | Output::Position { beam, .. }
+                if beam >= beams =>
+            {
                 Err(GradientError::NoBeam { beam })
             }
             Output::Stress { u, .. } | Output::Position { u, .. } if !(0.0..=1.0).contains(&u) => Err(GradientError::NotOnBeam { u }),
@@ -237,9 +249,29 @@ impl<'p> Gradients<'p> {
         }
     }
 
-    fn differentiate(&mut self, output: Output, point: &Point, fields: &[Field], state: &[f64]) -> Gradient {
+    fn differentiate(&mut self, output: Output, point: &Point, fields: &[Field], state: &[f64]) -> (Gradient, f64) {
         let mut parts = self.dependence(output, point, fields, state);
         let kinematic = self.model.kinematic;
+        let rate = match output {
+            Output::Force => {
+                if kinematic {
+                    point.stiffness
+                } else {
+                    1.0
+                }
+            }
+            Output::Displacement => {
+                if kinematic {
+                    1.0
+                } else {
+                    1.0 / point.stiffness
+                }
+            }
+            _ => {
+                let along: f64 = parts.rhs.iter().zip(&self.stage.tangent).map(|(by, change)| by * change).sum();
+                along * parts.unit / self.model.control_unit()
+            }
+        };
         match output {
             // Under a kinematic drive the displacement is the control, under a force drive the force is.
             Output::Force if kinematic => self.along_tangent(&mut parts, fields, state, 1.0),
@@ -256,7 +288,7 @@ impl<'p> Gradients<'p> {
                 self.add_origins(&mut parts.design, self.model, &held, 1.0);
             }
         }
-        self.in_si(&parts.design, parts.unit)
+        (self.in_si(&parts.design, parts.unit), rate)
     }
 
     /// The derivative of ∂ℒ/∂p along the path.
@@ -282,11 +314,10 @@ impl<'p> Gradients<'p> {
             }
             Output::PeakStress { beam } => {
                 let beam = beam.or_else(|| point.peak_stress().map(|p| p.0)).unwrap_or(0);
-                let peak = point.beams[beam].peak_stress();
-                let (piece, inner, v) = point.beams[beam].piece_at(peak.u);
-                let v = polished_place(inner, v, peak.face, fields[0].constants.axial > 0.0);
-                let sign = if peak.tension { 1.0 } else { -1.0 };
-                self.add_stress(&mut parts, &point.beams[beam], fields, (beam, piece, v, peak.face, sign));
+                self.add_peak(&mut parts, &point.beams[beam], fields, (beam, point.beams[beam].peak_stress()));
+            }
+            Output::FacePeakStress { beam, face } => {
+                self.add_peak(&mut parts, &point.beams[beam], fields, (beam, point.beams[beam].peak_stress_of_face(face)));
             }
             Output::Position { beam, u, axis } => {
                 parts.unit = model.length_m;
@@ -390,7 +421,7 @@ impl<'p> Gradients<'p> {
         let b = reflection.map_or(b, |r| r.image(b));
         let apart = [b[0] - a[0], b[1] - a[1]];
         let distance = maths::hypot(apart[0], apart[1]);
-        if distance > 1e-9 * unit {
+        if distance > NO_DISTANCE * unit {
             let along = apart.map(|d| d / distance);
             self.add_position(parts, point, fields, state, (first.0, first.1, along.map(|c| -c)));
             // A reflection is its own transpose.
@@ -406,6 +437,14 @@ impl<'p> Gradients<'p> {
             let taper = inner.info.thickness_m.map_or(0.0, |[a, b]| b - a);
             sum.add_sliding(&inner.info.range, u, -0.5 * taper / unit);
         }
+    }
+
+    /// The place of a largest stress does not matter, as far as it is one.
+    fn add_peak(&self, parts: &mut Dependence, state: &BeamState, fields: &[Field], (beam, peak): (usize, PeakStress)) {
+        let (piece, inner, v) = state.piece_at(peak.u);
+        let v = polished_place(inner, v, peak.face, fields[0].constants.axial > 0.0);
+        let sign = if peak.tension { 1.0 } else { -1.0 };
+        self.add_stress(parts, state, fields, (beam, piece, v, peak.face, sign));
     }
 
     fn add_stress(&self, parts: &mut Dependence, state: &BeamState, fields: &[Field], at: (usize, usize, f64, Face, f64)) {

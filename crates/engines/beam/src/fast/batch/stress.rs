@@ -1,0 +1,377 @@
+//! The largest stress of four designs: surveyed at the states, interpolated between them.
+//!
+//! Of every beam the stress at both ends is interpolated, and that at maxima inside, of which there is at most one of each sign that
+//! matters. Where such a maximum begins or ends between two states, it is looked for at each station.
+
+#![allow(clippy::needless_range_loop, reason = "sums over modes are read by their indices")]
+
+use forcewright_base::maths;
+use forcewright_base::quadrature::legendre_values;
+
+use crate::element::root_of;
+use crate::fast::kernel::Unknowns;
+use crate::fast::lanes::{LANES, Lane};
+use crate::fast::stress::{OneBeam, StressModel};
+
+/// A beam of four designs at one state, with derivatives by the part of the travel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BeamState<const M: usize, const E: usize> {
+    pub(super) at: Unknowns<M>,
+    pub(super) by: Unknowns<M>,
+    pub(super) beyond: [Lane; E],
+    pub(super) beyond_by: [Lane; E],
+    pub(super) survey: Survey,
+}
+
+/// What is known about the stress of a beam of four designs at one state.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Survey {
+    /// dφ/du at the start, in the middle and at the end, and its derivative.
+    pub(super) slope: [Lane; 3],
+    pub(super) slope_by: [Lane; 3],
+    /// Force along the beam at both ends, and its derivative; only where that makes stress.
+    axial: [Lane; 2],
+    axial_by: [Lane; 2],
+    /// Largest stress inside with positive and with negative slope.
+    inside: [Inside; 2],
+}
+
+/// A maximum of the stress inside a beam; all 0 in lanes that have none that matters.
+#[derive(Clone, Copy, Debug, Default)]
+struct Inside {
+    stress: Lane,
+    by: Lane,
+    place: Lane,
+}
+
+impl<const M: usize, const E: usize> Default for BeamState<M, E> {
+    fn default() -> Self {
+        let (at, beyond) = (Unknowns::default(), [Lane::ZERO; E]);
+        Self { at, by: at, beyond, beyond_by: beyond, survey: Survey::default() }
+    }
+}
+
+/// Maxima inside below this part of the largest stress of a state are not recorded.
+const FAR: f64 = 0.6;
+/// A sample is at least this part of the maximum next to it.
+const SAMPLED: f64 = 0.9;
+/// A maximum that is known at one of two states only is looked for between them if it is at least this part of the largest stress: it
+/// may have been larger before it was there.
+const CLOSE: f64 = 0.6;
+/// Maxima of two states are the same if they are no further apart than this part of the beam.
+const SAME: f64 = 0.15;
+
+/// Slopes of the modes at Chebyshev points, of which the first half is kept: they are even or odd about the middle.
+#[derive(Debug)]
+pub(super) struct Sampling<const M: usize, const E: usize> {
+    slope: Vec<([Lane; M], [Lane; E])>,
+    place: Vec<f64>,
+    /// Second derivatives at the end.
+    bend: ([Lane; M], [Lane; E]),
+    /// Size of the slope of the beam that was sampled last, and how fast its stress rises from both ends.
+    samples: Vec<Lane>,
+    start_rises: Lane,
+    end_rises: Lane,
+}
+
+impl<const M: usize, const E: usize> Sampling<M, E> {
+    pub(super) fn new() -> Self {
+        // One point in the middle.
+        let half = (M + E).div_ceil(2) + 1;
+        let place = |i: usize| 0.5 - 0.5 * maths::cos(std::f64::consts::FRAC_PI_2 * i as f64 / half as f64);
+        let slope = |i: usize| {
+            let mut p = vec![0.0; M + E + 2];
+            legendre_values(2.0 * place(i) - 1.0, &mut p);
+            let factor = |k: usize| Lane::splat(root_of(k + 2) * p[k + 1]);
+            (std::array::from_fn(factor), std::array::from_fn(|k| factor(M + k)))
+        };
+        // P_n' is n (n + 1)/2 at 1, with alternating sign at −1.
+        let bend = |k: usize| Lane::splat(root_of(k + 2) * ((k + 1) * (k + 2)) as f64);
+        Self {
+            slope: (0..=half).map(slope).collect(),
+            bend: (std::array::from_fn(bend), std::array::from_fn(|k| bend(M + k))),
+            place: (0..=2 * half).map(place).collect(),
+            samples: vec![Lane::ZERO; 2 * half + 1],
+            start_rises: Lane::ZERO,
+            end_rises: Lane::ZERO,
+        }
+    }
+
+    /// dφ/du at a sampling point and at the one that mirrors it.
+    #[inline]
+    fn pair(row: &([Lane; M], [Lane; E]), at: &Unknowns<M>, beyond: &[Lane; E]) -> [Lane; 2] {
+        let (mut even, mut odd) = (at.ends[1] - at.ends[0], Lane::ZERO);
+        // The slope of bubble k is a polynomial of degree k + 1.
+        for k in 0..M + E {
+            let part = if k < M { at.bubbles[k] * row.0[k] } else { beyond[k - M] * row.1[k - M] };
+            if k % 2 == 0 {
+                odd += part;
+            } else {
+                even += part;
+            }
+        }
+        [even + odd, even - odd]
+    }
+
+    /// dφ/du at the start, in the middle and at the end.
+    #[inline]
+    pub(super) fn slopes(&self, at: &Unknowns<M>, beyond: &[Lane; E]) -> [Lane; 3] {
+        let [first, last] = Self::pair(&self.slope[0], at, beyond);
+        let [middle, _] = Self::pair(&self.slope[self.slope.len() - 1], at, beyond);
+        [first, middle, last]
+    }
+
+    /// How fast the stress rises from both ends inwards, Pa; the axial part by a bound.
+    #[inline]
+    fn rises(&self, own: &StressModel, beam: &BeamState<M, E>) -> [Lane; 2] {
+        let (mut even, mut odd) = (Lane::ZERO, Lane::ZERO);
+        for k in 0..M + E {
+            let part = if k < M { beam.at.bubbles[k] * self.bend.0[k] } else { beam.beyond[k - M] * self.bend.1[k - M] };
+            // The other way round than the slopes themselves.
+            if k % 2 == 0 {
+                even += part;
+            } else {
+                odd += part;
+            }
+        }
+        let force = beam.at.force[0].abs() + beam.at.force[1].abs();
+        let inwards = |bend: Lane, slope: Lane, turn: Lane| {
+            let signed = Lane::where_above(slope, Lane::ZERO, bend, -bend) * own.bending;
+            if own.soft { signed + own.axial * force * (turn.abs() + slope.abs()) } else { signed }
+        };
+        let [start, _, end] = beam.survey.slope;
+        [inwards(even - odd, start, own.turn[0]), inwards(-(even + odd), end, own.turn[1])]
+    }
+
+    /// Fills in what is known about the stress of all beams at a state. `angles` are the angles at rest of a beam of one design.
+    pub(super) fn survey(
+        &mut self,
+        stress: &[StressModel],
+        beams: &mut [BeamState<M, E>],
+        angle_rad: impl Fn(usize, usize, &mut Vec<f64>),
+    ) {
+        let mut largest = Lane::ZERO;
+        for (own, beam) in stress.iter().zip(beams.iter_mut()) {
+            beam.survey.slope = self.slopes(&beam.at, &beam.beyond);
+            beam.survey.slope_by = self.slopes(&beam.by, &beam.beyond_by);
+            if own.soft {
+                for end in 0..2 {
+                    (beam.survey.axial[end], beam.survey.axial_by[end]) =
+                        own.axial_force(end, (beam.at.ends[end], beam.by.ends[end]), (beam.at.force, beam.by.force));
+                }
+            }
+            for i in [0, 2] {
+                largest = largest.max(beam.survey.slope[i].abs() * own.bending);
+            }
+        }
+        let least = largest * FAR;
+        let mut angles = Vec::new();
+        for (b, (own, beam)) in stress.iter().zip(beams.iter_mut()).enumerate() {
+            beam.survey.inside = Default::default();
+            let highest = self.sample(own, beam);
+            for lane in 0..LANES {
+                if highest.0[lane] > SAMPLED * least.0[lane] {
+                    if own.soft {
+                        angle_rad(b, lane, &mut angles);
+                    }
+                    self.inside(own, beam, lane, least.0[lane], &angles);
+                }
+            }
+        }
+    }
+
+    /// Samples the slope along a beam. Returns the largest stress at samples with a maximum next to them, the axial part by a bound.
+    #[inline]
+    fn sample(&mut self, own: &StressModel, beam: &BeamState<M, E>) -> Lane {
+        let last = self.samples.len() - 1;
+        for (i, row) in self.slope.iter().enumerate() {
+            let [left, right] = Self::pair(row, &beam.at, &beam.beyond);
+            (self.samples[i], self.samples[last - i]) = (left.abs(), right.abs());
+        }
+        let zero = Lane::ZERO;
+        // At the ends only where the stress rises inwards.
+        let [start, end] = self.rises(own, beam);
+        let mut highest = Lane::where_above(start, zero, self.samples[0], zero);
+        highest = highest.max(Lane::where_above(end, zero, self.samples[last], zero));
+        (self.start_rises, self.end_rises) = (start, end);
+        let mut before = self.samples[0];
+        for i in 1..last {
+            let (here, after) = (self.samples[i], self.samples[i + 1]);
+            // Equal neighbours count as maxima.
+            let beside = before.max(after);
+            highest = highest.max(Lane::where_above(beside, here, zero, here));
+            before = here;
+        }
+        let bending = highest * own.bending;
+        if own.soft { bending + own.axial * (beam.at.force[0].abs() + beam.at.force[1].abs()) } else { bending }
+    }
+
+    /// Looks for maxima inside a beam of one design that has just been sampled.
+    fn inside(&self, own: &StressModel, beam: &mut BeamState<M, E>, lane: usize, least: f64, angle_rad: &[f64]) {
+        let last = self.samples.len() - 1;
+        let at = |i: usize| self.samples[i].0[lane];
+        let rises = [self.start_rises.0[lane] > 0.0, self.end_rises.0[lane] > 0.0];
+        let axial = own.axial.0[lane] * (beam.at.force[0].0[lane].abs() + beam.at.force[1].0[lane].abs());
+        let floor = (SAMPLED * least - axial) / own.bending.0[lane];
+        let one = one_beam(own, (&beam.at, &beam.beyond), lane, angle_rad);
+        let by = one_beam(own, (&beam.by, &beam.beyond_by), lane, angle_rad);
+        for i in 0..=last {
+            let (left, here, right) = (at(i.saturating_sub(1)), at(i), at((i + 1).min(last)));
+            let largest = here >= floor && here >= left && here >= right;
+            if !largest || (i == 0 && !rises[0]) || (i == last && !rises[1]) {
+                continue;
+            }
+            let (low, high) = (self.place[i.saturating_sub(1)], self.place[(i + 1).min(last)]);
+            // From the vertex of the parabola through samples that are equally spaced in angle.
+            let (bend, half) = (left - 2.0 * here + right, 0.5 * (high - low));
+            let inner = i > 0 && i < last && bend < 0.0;
+            let start = if inner { self.place[i] + 0.5 * half * (left - right) / bend } else { self.place[i] };
+            let [stress, slope, bend, positive] = one.stress_with_side(start);
+            let step = if bend < 0.0 { (-slope / bend).clamp(low - start, high - start) } else { 0.0 };
+            let value = stress + 0.5 * slope * step;
+            let record = &mut beam.survey.inside[usize::from(positive < 0.0)];
+            if value >= least && value > record.stress.0[lane] {
+                let u = start + step;
+                (record.stress.0[lane], record.by.0[lane], record.place.0[lane]) = (value, one.stress_by(&by, u), u);
+            }
+        }
+    }
+}
+
+/// One beam of one design.
+fn one_beam<'a, const M: usize, const E: usize>(
+    own: &StressModel,
+    (at, beyond): (&Unknowns<M>, &[Lane; E]),
+    lane: usize,
+    angle_rad: &'a [f64],
+) -> OneBeam<'a, M, E> {
+    OneBeam {
+        ends: at.ends.map(|v| v.0[lane]),
+        force: at.force.map(|v| v.0[lane]),
+        bubbles: at.bubbles.map(|v| v.0[lane]),
+        beyond: beyond.map(|v| v.0[lane]),
+        factors: [own.bending.0[lane], own.axial.0[lane]],
+        angle_rad,
+    }
+}
+
+/// A maximum inside a beam of one design on the way from state to state.
+#[derive(Clone, Copy, Debug)]
+struct Passage {
+    beam: usize,
+    lane: usize,
+    /// Stress and derivative at both states, where it is known at both.
+    known: Option<[[f64; 2]; 2]>,
+    /// The larger of the stresses, and where that is.
+    largest: [f64; 2],
+}
+
+/// Two neighbouring states.
+#[derive(Debug, Default)]
+pub(super) struct Interval {
+    passages: Vec<Passage>,
+}
+
+impl Interval {
+    /// Notes the maxima inside beams.
+    pub(super) fn enter<const M: usize, const E: usize>(&mut self, states: [&[BeamState<M, E>]; 2]) {
+        self.passages.clear();
+        for (beam, (left, right)) in states[0].iter().zip(states[1]).enumerate() {
+            for (left, right) in left.survey.inside.iter().zip(&right.survey.inside) {
+                for lane in 0..LANES {
+                    let [from, to] = [left, right].map(|s| s.stress.0[lane]);
+                    if from > 0.0 || to > 0.0 {
+                        let places = [left, right].map(|s| s.place.0[lane]);
+                        let same = from > 0.0 && to > 0.0 && (places[0] - places[1]).abs() < SAME;
+                        let known = same.then_some([[from, left.by.0[lane]], [to, right.by.0[lane]]]);
+                        let largest = if from > to { [from, places[0]] } else { [to, places[1]] };
+                        self.passages.push(Passage { beam, lane, known, largest });
+                    }
+                }
+            }
+        }
+    }
+
+    /// Room of all buffers.
+    pub(super) fn room(&self) -> usize {
+        self.passages.capacity()
+    }
+}
+
+/// A place between two neighbouring states: these, and the weights of their values and slopes.
+#[derive(Clone, Copy)]
+pub(super) struct Between<'a, const M: usize, const E: usize> {
+    pub(super) states: [&'a [BeamState<M, E>]; 2],
+    pub(super) weights: [[f64; 2]; 2],
+}
+
+impl<const M: usize, const E: usize> Between<'_, M, E> {
+    #[inline]
+    fn mix(&self, beam: usize, pick: impl Fn(&Survey) -> [Lane; 2]) -> Lane {
+        let [left, right] = self.states.map(|s| pick(&s[beam].survey));
+        let [[a, b], [c, d]] = self.weights;
+        left[0] * a + left[1] * b + right[0] * c + right[1] * d
+    }
+
+    /// The largest stress, Pa, and its beam.
+    pub(super) fn peak(
+        &self,
+        interval: &Interval,
+        stress: &[StressModel],
+        tolerance: f64,
+        angle_rad: impl Fn(usize, usize, &mut Vec<f64>),
+    ) -> (Lane, Lane) {
+        let (mut best, mut which) = (Lane::ZERO, Lane::ZERO);
+        for (beam, own) in stress.iter().enumerate() {
+            let mut ends = [Lane::ZERO; 2];
+            for end in 0..2 {
+                ends[end] = self.mix(beam, |s| [s.slope[2 * end], s.slope_by[2 * end]]).abs() * own.bending;
+                if own.soft {
+                    ends[end] += self.mix(beam, |s| [s.axial[end], s.axial_by[end]]).abs() * own.axial;
+                }
+            }
+            let value = ends[0].max(ends[1]);
+            which = Lane::where_above(value, best, Lane::splat(beam as f64), which);
+            best = best.max(value);
+        }
+        for p in &interval.passages {
+            let floor = best.0[p.lane];
+            let value = if let Some([[v, dv], [w, dw]]) = p.known {
+                let [[a, b], [c, d]] = self.weights;
+                v * a + dv * b + w * c + dw * d
+            } else if p.largest[0] > CLOSE * floor {
+                let mut angles = Vec::new();
+                if stress[p.beam].soft {
+                    angle_rad(p.beam, p.lane, &mut angles);
+                }
+                self.look(&stress[p.beam], p, tolerance, floor, &angles)
+            } else {
+                continue;
+            };
+            if value > floor {
+                (best.0[p.lane], which.0[p.lane]) = (value, p.beam as f64);
+            }
+        }
+        (best, which)
+    }
+
+    /// The maximum next to a place in the interpolated state of a beam.
+    fn look(&self, own: &StressModel, passage: &Passage, tolerance: f64, floor: f64, angle_rad: &[f64]) -> f64 {
+        let (lane, start) = (passage.lane, passage.largest[1]);
+        let mut one = one_beam(own, (&Unknowns::<M>::default(), &[Lane::ZERO; E]), lane, angle_rad);
+        for (state, [a, b]) in self.states.iter().zip(self.weights) {
+            let s = &state[passage.beam];
+            let mix = |target: &mut [f64], at: &[Lane], by: &[Lane]| {
+                for (t, (v, d)) in target.iter_mut().zip(at.iter().zip(by)) {
+                    *t += a * v.0[lane] + b * d.0[lane];
+                }
+            };
+            mix(&mut one.ends, &s.at.ends, &s.by.ends);
+            mix(&mut one.force, &s.at.force, &s.by.force);
+            mix(&mut one.bubbles, &s.at.bubbles, &s.by.bubbles);
+            mix(&mut one.beyond, &s.beyond, &s.beyond_by);
+        }
+        let (low, high) = ((start - SAME).max(0.0), (start + SAME).min(1.0));
+        one.maximum(start, (low, high), tolerance, floor)
+    }
+}
