@@ -52,7 +52,7 @@ pub const CODES: &[Explanation] = &[
     code(
         "E0111",
         "a setting is not understood",
-        "`--set KEY=VALUE` replaces one value for this run. KEY is the dotted path of the project file, members of lists by name:\n\n    --set design.thickness=\"0.9 mm\"\n    --set design.beams.b1.bend=\"[1.2, -1.5]\"\n\nThe value is read as in the file; quotes that the shell takes away do no harm.",
+        "`--set KEY=VALUE` replaces one value for this run. KEY is the dotted path of the project file, members of lists by name:\n\n    --set design.thickness=\"0.9 mm\"\n    --set design.beams.b1.bend=\"[1.2, -1.5]\"\n\nA single number of a list or a point is named by its place, counted from 1, or by `x` and `y`:\n\n    --set design.beams.b1.bend.2=-1.5\n    --set design.nodes.n3.at.x=\"30 mm\"\n\nThe value is read as in the file; quotes that the shell takes away do no harm.",
     ),
     code(
         "E0201",
@@ -101,7 +101,11 @@ pub const CODES: &[Explanation] = &[
         "The table needs this key. What it means is said in the help and in the parameter table of the documentation (`forcewright schema`).",
     ),
     code("E0303", "unknown word", "The parameter takes one of a closed set of words; the help lists them."),
-    code("E0304", "unknown name", "A name refers to a member (a node, a beam) that the file does not define."),
+    code(
+        "E0304",
+        "unknown name",
+        "A name refers to a member (a node, a beam) that the file does not define, or a path to an entry that a list does not have: `bend.3` of two numbers.",
+    ),
     code("E0305", "two keys exclude each other", "Only one of the two can be given, because both say the same thing. Keep one."),
     code(
         "E0306",
@@ -121,8 +125,33 @@ pub const CODES: &[Explanation] = &[
         "A list is too short or too long: a point has two coordinates, a beam joins two nodes, and no collection has more than 500 members.",
     ),
     code(
+        "E0312",
+        "a study's number is not found",
+        "`[optimise.variables]`, `[tolerance.parameters]` and the members of `[tolerance.groups]` name numbers by their paths, as `--set` does, or many at once by a pattern:\n\n    \"design.thickness\"         one number\n    \"design.nodes.n3.at\"       both coordinates of a point\n    \"design.nodes.n3.at.x\"     one of them\n    \"design.beams.*.bend\"      every bend coefficient of every beam\n    \"design.beams.b*.bend.1\"   the first of every beam whose name begins with b\n\nA pattern that means no number is an error, because it is nearly always a slip. A search changes numbers of `[design]` only: what is required, what it is made of and how it is loaded stay.",
+    ),
+    code(
+        "E0313",
+        "a study cannot change this number",
+        "The number exists, but the family does not know what the design becomes when it changes; the label says why. Common causes: a node of a rigid body, which moves as one with the others; a node at which a beam ends that is given by `angle` or `through`, which would no longer meet it (give it by `bend`, whose shape follows the nodes); a thickness that no beam has.\n\nTake the number out of the study, or describe the design so that it can move.",
+    ),
+    code(
+        "E0315",
+        "not an objective",
+        "`[optimise]` has one `objective`: `{ minimise = … }` or `{ maximise = … }` with a name that the help lists. Some have one sense only: a deviation is made small, a usable stroke is made large.",
+    ),
+    code(
+        "E0317",
+        "the study is not described",
+        "The command needs a section of the project file that says what is asked for. A search for a better design needs at least\n\n    [optimise]\n    objective = { maximise = \"flat_ratio\" }\n    [optimise.variables]\n    \"design.nodes.n3.at\"  = { within = \"5 mm\" }\n    \"design.beams.*.bend\" = { range = [-3, 3] }\n\nExamples are printed by `forcewright new`.",
+    ),
+    code(
+        "E0318",
+        "the result cannot be written into the file",
+        "The design found is written into a copy of the project file, with its comments, each number in its own unit. One of the numbers has no place there: the message names its path, and something else, such as a text or a list of another shape, stands where it would go. Write that part of the design as the examples do.",
+    ),
+    code(
         "W0101",
         "a section is not used",
-        "The section belongs to a study (optimise, tolerance, calibrate, …) that this version does not have. It does not change the result of `solve`.",
+        "The section belongs to a study (such as `[calibrate]`) that this version does not have. It does not change the result of `solve`.",
     ),
 ];

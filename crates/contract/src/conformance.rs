@@ -9,6 +9,8 @@
 //!
 //! The example must stand alone (no `extends`), be understood without errors, and be analysed to the end.
 
+mod studies;
+
 use std::fmt::Debug;
 use std::time::{Duration, Instant};
 
@@ -49,6 +51,7 @@ pub fn suite<M: Mechanism>(example: &str) {
     unknown_keys::<M>(example);
     reproductions::<M>();
     edges::<M>(example);
+    studies::suite::<M>(example);
 }
 
 /// What came of a project.
@@ -158,6 +161,9 @@ impl Visitor for Words {
     }
     fn along(&mut self, param: &Param, most: usize, _: &mut Slot<Along>) {
         assert!(most >= 2, "`{}` cannot vary", param.key);
+    }
+    fn deferred(&mut self, param: &Param, _: &mut Slot<Value>) {
+        no_default(param);
     }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         no_default(param);
@@ -609,6 +615,7 @@ impl Visitor for Numbers {
             self.note(param, quantity.si, Shape::Quantity);
         }
     }
+    fn deferred(&mut self, _: &Param, _: &mut Slot<Value>) {}
     fn direction(&mut self, _: &Param, _: &mut Slot<[f64; 2]>) {}
     fn text(&mut self, _: &Param, _: &mut Slot<String>) {}
     fn flag(&mut self, _: &Param, _: &mut Slot<bool>) {}

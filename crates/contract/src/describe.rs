@@ -4,6 +4,8 @@
 use forcewright_base::diagnostics::Span;
 use forcewright_base::units::{Dimension, Quantity};
 
+use crate::tree::Value;
+
 /// Where a value comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Origin {
@@ -193,6 +195,8 @@ pub trait Visitor {
     fn points(&mut self, param: &Param, most: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>);
     /// A quantity, or pairs `[["0", "1 mm"], ["1", "0.6 mm"]]` of ascending places from 0 to 1 and quantities, at most `most`.
     fn along(&mut self, param: &Param, most: usize, slot: &mut Slot<Along>);
+    /// A value whose quantity follows from another key: kept as it stands, and read when that key is known.
+    fn deferred(&mut self, param: &Param, slot: &mut Slot<Value>);
     /// A direction `[x, y]` of two bare numbers, not both zero.
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>);
     /// Free text.

@@ -5,8 +5,13 @@ use std::marker::PhantomData;
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_model::{Figure, Outcome, ParameterRow, Statement};
 
+use forcewright_study::evaluator::Evaluator;
+use forcewright_study::task::Task;
+
 use crate::describe::Describe;
+use crate::numbers::{Number, numbers_of};
 use crate::project::Project;
+use crate::studies::{Free, Studies};
 use crate::{paths, read, schema};
 
 /// Called with the finished fraction of the work; returns whether to go on.
@@ -30,6 +35,16 @@ pub trait Mechanism: Sync + 'static {
 
     /// Analyses a design. A pure function of it; a solver's failure is in the outcome's status.
     fn analyse(design: &Self::Design, progress: Progress<'_>) -> Analysis;
+
+    /// The sections of the project file that studies read.
+    fn studies(spec: &Self::Spec) -> &Studies;
+
+    /// The design compiled for studies of some of its numbers: what it does, as the measures that its requirements limit, at any values of
+    /// them. What cannot vary goes into `diagnostics`.
+    fn evaluator(spec: &Self::Spec, design: &Self::Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>>;
+
+    /// The search that `[optimise]` asks for, over some numbers. What cannot vary, or is no objective, goes into `diagnostics`.
+    fn task(spec: &Self::Spec, design: &Self::Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task>;
 
     /// Codes of this family: its errors and its checks.
     fn explanations() -> &'static [Explanation];
@@ -115,6 +130,14 @@ pub trait Understood {
     fn analyse(&self, progress: Progress<'_>) -> Analysis;
     /// Its parameters as typed.
     fn parameters(&self) -> Vec<ParameterRow>;
+    /// Its numbers, by their paths.
+    fn numbers(&self) -> &[Number];
+    /// What studies are asked for.
+    fn studies(&self) -> &Studies;
+    /// See [`Mechanism::evaluator`].
+    fn evaluator(&self, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>>;
+    /// See [`Mechanism::task`].
+    fn task(&self, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task>;
 }
 
 /// Makes a [`Family`] of a [`Mechanism`].
@@ -129,8 +152,10 @@ impl<M> Entry<M> {
 }
 
 struct Ready<M: Mechanism> {
+    spec: M::Spec,
     design: M::Design,
     parameters: Vec<ParameterRow>,
+    numbers: Vec<Number>,
 }
 
 impl<M: Mechanism> Understood for Ready<M> {
@@ -140,6 +165,22 @@ impl<M: Mechanism> Understood for Ready<M> {
 
     fn parameters(&self) -> Vec<ParameterRow> {
         self.parameters.clone()
+    }
+
+    fn numbers(&self) -> &[Number] {
+        &self.numbers
+    }
+
+    fn studies(&self) -> &Studies {
+        M::studies(&self.spec)
+    }
+
+    fn evaluator(&self, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
+        M::evaluator(&self.spec, &self.design, free, diagnostics)
+    }
+
+    fn task(&self, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task> {
+        M::task(&self.spec, &self.design, free, diagnostics)
     }
 }
 
@@ -170,8 +211,10 @@ impl<M: Mechanism> Family for Entry<M> {
         if project.diagnostics.has_errors() {
             return None;
         }
-        let parameters = paths::rows_of(&mut spec);
-        Some(Box::new(Ready::<M> { design: design?, parameters }))
+        let (mut parameters, mut numbers) = (paths::rows_of(&mut spec), numbers_of(&mut spec));
+        parameters.retain(|row| !M::studies(&spec).lack(&row.path));
+        numbers.retain(|number| !Studies::hold(&number.path));
+        Some(Box::new(Ready::<M> { design: design?, spec, parameters, numbers }))
     }
 
     fn explanations(&self) -> &'static [Explanation] {

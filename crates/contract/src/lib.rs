@@ -5,10 +5,14 @@ pub mod codes;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 pub mod describe;
+pub mod edit;
 pub mod family;
 pub mod header;
+pub mod numbers;
 pub mod paths;
 pub mod project;
 pub mod read;
+pub mod scatter;
 pub mod schema;
+pub mod studies;
 pub mod tree;

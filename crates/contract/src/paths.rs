@@ -4,6 +4,7 @@ use forcewright_base::units::Quantity;
 use forcewright_model::ParameterRow;
 
 use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word, member_path};
+use crate::tree::Value;
 
 /// Every path that a description knows, members written as `*`: `design.beams.*.bend`.
 pub fn keys_of(design: &mut dyn Describe) -> Vec<String> {
@@ -55,6 +56,9 @@ impl Visitor for Keys {
         self.note(param);
     }
     fn along(&mut self, param: &Param, _: usize, _: &mut Slot<Along>) {
+        self.note(param);
+    }
+    fn deferred(&mut self, param: &Param, _: &mut Slot<Value>) {
         self.note(param);
     }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
@@ -143,6 +147,9 @@ impl Visitor for Rows {
         self.note(param, slot.as_ref(), |v| list(v, |p| list(&p.value, ToString::to_string)));
     }
     fn along(&mut self, param: &Param, _: usize, slot: &mut Slot<Along>) {
+        self.note(param, slot.as_ref(), ToString::to_string);
+    }
+    fn deferred(&mut self, param: &Param, slot: &mut Slot<Value>) {
         self.note(param, slot.as_ref(), ToString::to_string);
     }
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>) {

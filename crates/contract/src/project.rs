@@ -195,7 +195,7 @@ impl Loader<'_> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut merged = self.file(&folder.join(base), Some(span));
         self.chain.pop();
-        merged.overlay(tree);
+        self.diagnostics.append(merged.overlay(tree));
         merged
     }
 
@@ -246,7 +246,7 @@ impl Loader<'_> {
             }
             self.sources.add("--variant", entry.key.as_str());
             match entry.item.value {
-                Value::Table(table) => tree.overlay(table),
+                Value::Table(table) => self.diagnostics.append(tree.overlay(table)),
                 _ => self.diagnostics.push(
                     Diagnostic::error("E0206", entry.item.span, "a variant is a table")
                         .help("write the differences as keys, such as `design.thickness = \"0.85 mm\"`"),
@@ -271,7 +271,7 @@ impl Loader<'_> {
         let whole = Span { source, start: 0, end: setting.len() };
         let refuse = |message: &str| {
             Diagnostic::error("E0111", whole, message)
-                .help("write `--set design.thickness=\"0.9 mm\"`, members by name: `design.beams.b1.bend=[1.2, -1.5]`")
+                .help("write `--set design.thickness=\"0.9 mm\"`, members by name: `design.beams.b1.bend=[1.2, -1.5]`, single numbers by place: `design.nodes.n3.at.x=\"30 mm\"`")
         };
         let Some((key, value)) = setting.split_once('=') else {
             return self.diagnostics.push(refuse("a setting is KEY=VALUE"));
@@ -281,7 +281,8 @@ impl Loader<'_> {
             return self.diagnostics.push(refuse("a setting's key is a dotted path"));
         }
         let item = tree::parse_value(value, source, key.len() + 1, &mut self.diagnostics);
-        tree.overlay(nest(&parts, source, item));
+        let astray = tree.overlay(nest(&parts, source, item));
+        self.diagnostics.append(astray);
     }
 
     /// The family must be known before anything else is read, so its key is checked here.

@@ -310,6 +310,24 @@ fn bare_number(param: &Param, item: &Item) -> Result<f64, Box<Diagnostic>> {
     }
 }
 
+/// Values that were kept until their quantity was known, SI: one, or a list of them. `None` after an error, which is reported.
+pub fn deferred_quantities(slot: &Located<Value>, dimension: Dimension, diagnostics: &mut Diagnostics) -> Option<Vec<f64>> {
+    let param = Param::new("value", "").of(dimension);
+    let own = Item { span: slot.span, value: slot.value.clone() };
+    let items = if let Value::List(items) = &slot.value { items.as_slice() } else { std::slice::from_ref(&own) };
+    let mut found = Vec::new();
+    for item in items {
+        match quantity_of(&param, item) {
+            Ok(quantity) => found.push(quantity.si),
+            Err(diagnostic) => {
+                diagnostics.push(*diagnostic);
+                return None;
+            }
+        }
+    }
+    Some(found)
+}
+
 fn list_of<'i>(item: &'i Item, wanted: &str, example: &str) -> Result<&'i [Item], Box<Diagnostic>> {
     match &item.value {
         Value::List(items) => Ok(items),
@@ -406,6 +424,10 @@ impl Visitor for Reader<'_> {
             Value::List(items) => Err(wrong_length(item, &format!("2 to {most} pairs of place and value"), items.len())),
             _ => quantity_of(param, item).map(Along::Constant),
         });
+    }
+
+    fn deferred(&mut self, param: &Param, slot: &mut Slot<Value>) {
+        self.fill(param, slot, |item| Ok(item.value.clone()));
     }
 
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>) {

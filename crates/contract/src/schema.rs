@@ -6,6 +6,7 @@ use forcewright_base::units::{Dimension, Quantity, Unit, format_si};
 use serde_json::{Map, Value, json};
 
 use crate::describe::{Along, Describe, Form, Located, Members, Param, Reserved, Slot, Visitor, Word};
+use crate::tree;
 
 /// JSON schema (draft 2020-12) of a description.
 pub fn json_schema(id: &str, title: &str, design: &mut dyn Describe) -> Value {
@@ -111,6 +112,10 @@ impl Visitor for Schema {
         let pair = json!({ "type": "array", "prefixItems": [{ "type": ["string", "number"] }, quantity_schema(param)], "minItems": 2, "maxItems": 2 });
         let places = json!({ "type": "array", "items": pair, "minItems": 2, "maxItems": most });
         self.add(param, json!({ "anyOf": [quantity_schema(param), places] }));
+    }
+    fn deferred(&mut self, param: &Param, _: &mut Slot<tree::Value>) {
+        let one = json!({ "type": ["number", "string"] });
+        self.add(param, json!({ "anyOf": [one, { "type": "array", "items": one }] }));
     }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         self.add(param, json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 }));
@@ -221,6 +226,9 @@ impl Visitor for Listing {
         let takes =
             format!("{name}, `\"{example}\"`; or at 2 to {most} places from 0 to 1, `[[\"0\", \"{example}\"], [\"1\", \"{example}\"]]`");
         self.row(param, &takes);
+    }
+    fn deferred(&mut self, param: &Param, _: &mut Slot<tree::Value>) {
+        self.row(param, "in the unit of what it is for");
     }
     fn direction(&mut self, param: &Param, _: &mut Slot<[f64; 2]>) {
         self.row(param, "a direction, `[0, -1]`");

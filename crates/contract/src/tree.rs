@@ -59,6 +59,24 @@ impl Value {
     }
 }
 
+impl std::fmt::Display for Value {
+    /// As it would be written in a file.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let list = |items: Vec<String>| items.join(", ");
+        match self {
+            Self::Text(text) => write!(f, "\"{text}\""),
+            Self::Number(number) => number.fmt(f),
+            Self::Flag(flag) => flag.fmt(f),
+            Self::List(items) => write!(f, "[{}]", list(items.iter().map(|i| i.value.to_string()).collect())),
+            Self::Table(table) => {
+                let entries = table.entries.iter().map(|e| format!("{} = {}", e.key, e.item.value));
+                write!(f, "{{ {} }}", list(entries.collect()))
+            }
+            Self::Refused => f.write_str("?"),
+        }
+    }
+}
+
 /// One key of a table.
 #[derive(Clone, Debug)]
 pub struct Entry {
@@ -90,16 +108,19 @@ impl Table {
     }
 
     /// Lays another table over this one: tables merge key by key, lists of named tables merge name by name, others by place, everything else is
-    /// replaced. The other wins.
-    pub fn overlay(&mut self, other: Self) {
+    /// replaced. The other wins. A single entry of a list is reached by its place, counted from 1, or by `x` and `y` in a pair:
+    /// `bend.2`, `at.x`. Returned is what names a place that its list does not have; the list is left as it was.
+    pub fn overlay(&mut self, other: Self) -> Diagnostics {
         // Searched by an index: files of a hundred thousand keys are hostile, but must not take for ever.
         let places: BTreeMap<String, usize> = self.entries.iter().enumerate().map(|(at, e)| (e.key.clone(), at)).collect();
+        let mut astray = Diagnostics::default();
         for entry in other.entries {
             match places.get(&entry.key).and_then(|at| self.entries.get_mut(*at)) {
                 None => self.entries.push(entry),
-                Some(mine) => merge(mine, entry),
+                Some(mine) => astray.append(merge(mine, entry)),
             }
         }
+        astray
     }
 }
 
@@ -108,7 +129,8 @@ fn places_of(list: &[Item]) -> BTreeMap<String, usize> {
     list.iter().enumerate().rev().filter_map(|(at, item)| Some((name_of(item)?.to_owned(), at))).collect()
 }
 
-fn merge(mine: &mut Entry, theirs: Entry) {
+fn merge(mine: &mut Entry, theirs: Entry) -> Diagnostics {
+    let mut astray = Diagnostics::default();
     let replaced = match (&mut mine.item.value, theirs.item.value) {
         (Value::Table(base), Value::Table(over)) => return base.overlay(over),
         (Value::List(base), Value::List(over)) if named(base) && named(&over) => {
@@ -116,11 +138,11 @@ fn merge(mine: &mut Entry, theirs: Entry) {
             for item in over {
                 let at = name_of(&item).and_then(|name| places.get(name)).copied();
                 match (at, item) {
-                    (Some(at), Item { value: Value::Table(table), .. }) => overlay_item(&mut base[at], table),
+                    (Some(at), Item { value: Value::Table(table), .. }) => astray.append(overlay_item(&mut base[at], table)),
                     (_, item) => base.push(item),
                 }
             }
-            return;
+            return astray;
         }
         // `design.beams.b1.bend = …` in a variant or on the command line: members of a list by name.
         (Value::List(base), Value::Table(over)) if named(base) => {
@@ -128,7 +150,7 @@ fn merge(mine: &mut Entry, theirs: Entry) {
             let mut strangers = Table::default();
             for entry in over.entries {
                 match (places.get(&entry.key), entry.item.value) {
-                    (Some(at), Value::Table(table)) => overlay_item(&mut base[*at], table),
+                    (Some(at), Value::Table(table)) => astray.append(overlay_item(&mut base[*at], table)),
                     (_, value) => strangers.entries.push(Entry { item: Item { value, ..entry.item }, ..entry }),
                 }
             }
@@ -141,7 +163,7 @@ fn merge(mine: &mut Entry, theirs: Entry) {
                 }
                 other => Item { span: entry.item.span, value: other },
             }));
-            return;
+            return astray;
         }
         // `load.2.travel = …`: members without names by their place.
         (Value::List(base), Value::Table(over)) if numbered(base) => {
@@ -149,7 +171,7 @@ fn merge(mine: &mut Entry, theirs: Entry) {
             for entry in over.entries {
                 let at = entry.key.parse::<usize>().ok().and_then(|n| n.checked_sub(1)).filter(|at| *at < base.len());
                 match (at, entry.item.value) {
-                    (Some(at), Value::Table(table)) => overlay_item(&mut base[at], table),
+                    (Some(at), Value::Table(table)) => astray.append(overlay_item(&mut base[at], table)),
                     (_, value) => strangers.entries.push(Entry { item: Item { value, ..entry.item }, ..entry }),
                 }
             }
@@ -157,18 +179,57 @@ fn merge(mine: &mut Entry, theirs: Entry) {
             if let Some(first) = strangers.entries.first() {
                 base.push(Item { span: first.key_span, value: Value::Table(strangers) });
             }
-            return;
+            return astray;
+        }
+        // `bend.2 = …`, `at.x = …`: entries of a list of values by their place.
+        (Value::List(base), Value::Table(over)) if !named(base) => {
+            for entry in over.entries {
+                match place_in(base, &entry.key).and_then(|at| base.get_mut(at)) {
+                    Some(item) => {
+                        let mut mine = Entry { item: item.clone(), ..entry.clone() };
+                        astray.append(merge(&mut mine, entry));
+                        *item = mine.item;
+                    }
+                    None => astray.push(no_place(&mine.key, base, &entry)),
+                }
+            }
+            return astray;
         }
         (_, other) => other,
     };
     mine.key_span = theirs.key_span;
     mine.item = Item { span: theirs.item.span, value: replaced };
+    astray
 }
 
-fn overlay_item(item: &mut Item, over: Table) {
-    if let Value::Table(table) = &mut item.value {
-        table.overlay(over);
+fn overlay_item(item: &mut Item, over: Table) -> Diagnostics {
+    match &mut item.value {
+        Value::Table(table) => table.overlay(over),
+        _ => Diagnostics::default(),
     }
+}
+
+/// Where a key points in a list of values: `1` is the first; a pair also has `x` and `y`.
+fn place_in(list: &[Item], key: &str) -> Option<usize> {
+    match (key, list.len()) {
+        ("x", 2) => Some(0),
+        ("y", 2) => Some(1),
+        _ => key.parse::<usize>().ok()?.checked_sub(1).filter(|at| *at < list.len()),
+    }
+}
+
+fn no_place(name: &str, list: &[Item], entry: &Entry) -> Diagnostic {
+    let places = match list.len() {
+        0 => "has no entries".to_owned(),
+        1 => "has one entry, `1`".to_owned(),
+        2 => "has the entries `1` and `2`, or `x` and `y`".to_owned(),
+        n => format!("has the entries `1` to `{n}`"),
+    };
+    let key: String = entry.key.chars().take(60).collect();
+    let name: String = name.chars().take(60).collect();
+    Diagnostic::error("E0304", entry.key_span, format!("the list `{name}` has no entry `{key}`"))
+        .label("not there")
+        .help(format!("`{name}` {places}; give the whole list to make it longer"))
 }
 
 fn named(list: &[Item]) -> bool {
@@ -439,7 +500,7 @@ mod tests {
     fn child_wins_and_names_merge() {
         let (mut base, _) = read("[a]\nx = '1'\ny = '2'\n[[b]]\nname = 'p'\nv = '1'\n[[b]]\nname = 'q'\nv = '2'");
         let (over, _) = read("a.y = '3'\nb.q.v = '4'\n");
-        base.overlay(over);
+        assert!(base.overlay(over).is_empty());
         assert_eq!(text_at(&base, &["a", "x"]), Some("1"));
         assert_eq!(text_at(&base, &["a", "y"]), Some("3"));
         let Value::List(list) = &base.get("b").unwrap().item.value else { panic!("a list") };

@@ -7,6 +7,7 @@ mod figure;
 mod outcome;
 mod report;
 mod scene;
+mod study;
 
 pub use check::{Check, CheckState, Sense};
 pub use curve::{Axis, Branch, Curve};
@@ -14,3 +15,4 @@ pub use figure::{Figure, FigureContent, HorizontalBand, HorizontalLine, Marker, 
 pub use outcome::{Counter, Metric, Outcome, Status, StatusKind, Warning};
 pub use report::{Citation, ParameterRow, Report, Statement};
 pub use scene::{ColourScale, Item, Role, Scene, SupportKind};
+pub use study::{Study, StudyColumn, StudyTable};

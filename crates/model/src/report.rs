@@ -1,6 +1,6 @@
 //! A design report, as data.
 
-use crate::{Figure, Outcome};
+use crate::{Figure, Outcome, Study};
 
 /// A work that was used, as it is cited.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,6 +52,8 @@ pub struct Report {
     pub input_sha256: String,
     /// The one command that makes this report again.
     pub command: String,
+    /// The study that the design comes from, if it does.
+    pub study: Option<Study>,
     /// Figures, in the order shown.
     pub figures: Vec<Figure>,
     /// Parameters, in the order of the description.

@@ -13,8 +13,14 @@ pub enum Role {
     UndeformedCopy,
     /// The deformed shape of such a copy.
     DeformedCopy,
-    /// A construction line: mirror, wall, envelope.
+    /// A rigid part under load.
+    Rigid,
+    /// A rigid part of a copy that follows from the layout, under load.
+    RigidCopy,
+    /// A construction line: mirror, wall.
     Construction,
+    /// The box in which the mechanism has to stay.
+    Envelope,
 }
 
 /// How a point is held.
@@ -110,6 +116,8 @@ pub struct Scene {
     pub items: Vec<Item>,
     /// What the colours of [`Item::Line`] values mean.
     pub scale: Option<ColourScale>,
+    /// What the legend calls the shapes drawn as [`Role::Undeformed`] and as [`Role::Deformed`].
+    pub words: [&'static str; 2],
     /// The unit of the scale bar.
     pub display: Unit,
     /// A description for people who cannot see it.

@@ -110,6 +110,58 @@ fn settings_replace_values_of_every_kind() {
 }
 
 #[test]
+fn single_entries_of_lists_are_reached_by_their_place() {
+    let width = "design.width=[[\"0\", \"1 mm\"], [\"1\", \"2 mm\"]]";
+    for (settings, path, value) in [
+        (&["design.beams.b1.bend.2=7"][..], "design.beams.b1.bend", "[1, 7]"),
+        (&["design.beams.b1.bend.1=-3.5", "design.beams.b1.bend.2=4"], "design.beams.b1.bend", "[-3.5, 4]"),
+        (&["design.nodes.n1.at.x=9 mm"], "design.nodes.n1.at", "[9 mm, 2 mm]"),
+        (&["design.nodes.n1.at.y = \"3 cm\""], "design.nodes.n1.at", "[1 mm, 3 cm]"),
+        (&["design.nodes.n1.at.2=0 mm"], "design.nodes.n1.at", "[1 mm, 0 mm]"),
+        (&["design.nodes.n1.at={ y = \"4 mm\" }"], "design.nodes.n1.at", "[1 mm, 4 mm]"),
+        (&["design.beams.b1.between.2=n9"], "design.beams.b1.between", "[n1, n9]"),
+        // Places of places, and places of a list that a setting has just given.
+        (&[width, "design.width.2.2=3 mm"], "design.width", "[[0, 1 mm], [1, 3 mm]]"),
+        (&["design.beams.b1.bend=[5, 6, 7]", "design.beams.b1.bend.3=8"], "design.beams.b1.bend", "[5, 6, 8]"),
+    ] {
+        let mut reading = with("", None, settings);
+        assert_eq!(reading.row(path), value, "{settings:?}");
+    }
+    // The same in a child file and in a variant.
+    let mut child = with("[design]\nnodes.n1.at.x = \"8 mm\"\n[variants.v]\ndesign.beams.b1.bend.1 = 9\n", Some("v"), &[]);
+    assert_eq!([child.row("design.nodes.n1.at"), child.row("design.beams.b1.bend")], ["[8 mm, 2 mm]", "[9, 2]"]);
+}
+
+#[test]
+fn places_that_a_list_does_not_have_are_named() {
+    for (setting, found, help) in [
+        (
+            "design.beams.b1.bend.3=7",
+            "E0304 --set:1:22 3",
+            "`bend` has the entries `1` and `2`, or `x` and `y`; give the whole list to make it longer",
+        ),
+        (
+            "design.beams.b1.bend.0=7",
+            "E0304 --set:1:22 0",
+            "`bend` has the entries `1` and `2`, or `x` and `y`; give the whole list to make it longer",
+        ),
+        (
+            "design.nodes.n1.at.z=7 mm",
+            "E0304 --set:1:20 z",
+            "`at` has the entries `1` and `2`, or `x` and `y`; give the whole list to make it longer",
+        ),
+        // Of another kind than its neighbours: the entry itself is at fault.
+        ("design.nodes.n1.at.x=7 N", "E0201 --set:1:22 7 N", "write a length such as \"16 mm\" (µm, mm, cm, m, in)"),
+    ] {
+        let reading = read_files(&[("a.toml", BASE)], None, &[setting]);
+        assert_eq!(reading.found, [found], "{setting}\n{}", reading.shown);
+        assert_eq!(reading.help, [help], "{setting}");
+    }
+    let three = read_files(&[("a.toml", BASE)], None, &["design.beams.b1.bend=[1, 2, 3]", "design.beams.b1.bend.x=7"]);
+    assert_eq!(three.help, ["`bend` has the entries `1` to `3`; give the whole list to make it longer"]);
+}
+
+#[test]
 fn mistakes_point_into_the_text_they_stand_in() {
     let variant = BASE.replace("design.thickness = \"0.85 mm\"", "design.thicknes = \"0.85 N\"\ndesign.depth = \"0.85 N\"");
     for (files, variant, set, expected) in [

@@ -7,7 +7,9 @@ use forcewright_base::diagnostics::{Diagnostics, Severity};
 use forcewright_base::units::{Dimension, Quantity};
 use forcewright_contract::describe::{Along, Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
+use forcewright_contract::numbers::{Number, numbers_of};
 use forcewright_contract::project::{Choices, FileError, Files, Project};
+use forcewright_contract::studies::Studies;
 use forcewright_contract::{paths, read};
 
 /// The whole file.
@@ -16,6 +18,7 @@ pub(crate) struct Toy {
     header: Header,
     pub(crate) design: Section<Design>,
     pub(crate) load: Vec<Member<Load>>,
+    pub(crate) studies: Studies,
 }
 
 /// A member written as the only table, or in a list one after the other.
@@ -43,6 +46,7 @@ pub(crate) struct Node {
     at: Slot<[Quantity; 2]>,
     support: Slot<&'static str>,
     direction: Slot<[f64; 2]>,
+    through: Slot<Vec<Located<[Quantity; 2]>>>,
 }
 
 /// A member written in a list.
@@ -56,7 +60,7 @@ pub(crate) struct Beam {
 
 const SUPPORTS: &[Word] = &[Word { word: "clamped", doc: "held" }, Word { word: "pinned", doc: "turns" }];
 const RESERVED: &[Reserved] = &[
-    Reserved { key: "optimise", instead: "a study reads it", ignored: true },
+    Reserved { key: "calibrate", instead: "a study reads it", ignored: true },
     Reserved { key: "errors", instead: "change the parameter", ignored: false },
 ];
 
@@ -65,6 +69,7 @@ impl Describe for Toy {
         self.header.describe(v);
         self.design.describe(v, &Param::new("design", "The design.").required());
         v.members(&Param::new("load", "Loads."), Form::Stages, &mut self.load);
+        self.studies.describe(v);
         v.reserved(RESERVED);
     }
 }
@@ -94,6 +99,7 @@ impl Describe for Node {
         v.point(&Param::new("at", "Position.").of(Dimension::Length).within(-10.0, 10.0), &mut self.at);
         v.choice(&Param::new("support", "Support."), SUPPORTS, &mut self.support);
         v.direction(&Param::new("direction", "Direction."), &mut self.direction);
+        v.points(&Param::new("through", "Points.").of(Dimension::Length).within(-10.0, 10.0), 4, &mut self.through);
     }
 }
 
@@ -137,7 +143,13 @@ pub(crate) struct Reading {
 impl Reading {
     /// The rows of the parameter table, `path = value`.
     pub(crate) fn rows(&mut self) -> Vec<String> {
-        paths::rows_of(&mut self.toy).into_iter().map(|r| format!("{} = {}", r.path, r.value)).collect()
+        let rows = paths::rows_of(&mut self.toy).into_iter();
+        rows.filter(|r| !self.toy.studies.lack(&r.path)).map(|r| format!("{} = {}", r.path, r.value)).collect()
+    }
+
+    /// The numbers that a study can change.
+    pub(crate) fn numbers(&mut self) -> Vec<Number> {
+        numbers_of(&mut self.toy)
     }
 
     /// One row.

@@ -106,7 +106,8 @@ fn header(axis: &Axis) -> String {
     }
 }
 
-fn number(value: f64) -> String {
+/// The shortest decimal that gives the same double again; nothing for one that is not finite, and no sign for a zero.
+pub fn number(value: f64) -> String {
     // Adding zero takes the sign from a negative zero.
     let value = value + 0.0;
     let size = value.abs();
@@ -119,7 +120,8 @@ fn number(value: f64) -> String {
     }
 }
 
-fn row(cells: impl IntoIterator<Item = String>, out: &mut String) {
+/// Adds a row of cells, quoted where they need it.
+pub fn row(cells: impl IntoIterator<Item = String>, out: &mut String) {
     for (i, cell) in cells.into_iter().enumerate() {
         if i > 0 {
             out.push(',');

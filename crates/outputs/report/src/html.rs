@@ -5,7 +5,9 @@
 use std::fmt::Write as _;
 
 use forcewright_base::units::{Unit, format_number, format_si};
-use forcewright_model::{Check, CheckState, Figure, FigureContent, Metric, Plot, Report, Sense, Series, Statement, StatusKind};
+use forcewright_model::{
+    Check, CheckState, Figure, FigureContent, Metric, Plot, Report, Sense, Series, Statement, StatusKind, Study, StudyColumn,
+};
 
 use crate::escape::{each, escape, path, prose};
 use crate::svg;
@@ -24,6 +26,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src dat
 /// The report as one self-contained HTML page.
 pub fn page(report: &Report) -> String {
     let sections: String = [
+        report.study.as_ref().map_or_else(String::new, study),
         requirements(report),
         own_checks(report),
         warnings(report),
@@ -34,17 +37,18 @@ pub fn page(report: &Report) -> String {
         statements("limits", "Limits of validity", &report.limits),
         sources(report),
         work(report),
-        provenance(report),
+        provenance(&Provenance::of(report)),
     ]
     .concat();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n{}</head>\n<body>\n{}<main>\n{sections}</main>\n</body>\n</html>\n",
-        head(report),
+        head(&title(report), &report.version),
         header(report)
     )
 }
 
-fn head(report: &Report) -> String {
+/// The head of a page.
+pub(crate) fn head(title: &str, version: &str) -> String {
     let (light, dark) = (svg::declarations(false), svg::declarations(true));
     // No icon either: browsers would ask the server for one.
     format!(
@@ -52,8 +56,8 @@ fn head(report: &Report) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<meta name=\"color-scheme\" content=\"light dark\" />\n\
          <meta name=\"generator\" content=\"Forcewright {}\" />\n<title>{}</title>\n<link rel=\"icon\" href=\"data:,\" />\n<style>\n\
          :root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{STYLE}</style>\n",
-        escape(&report.version),
-        escape(&title(report))
+        escape(version),
+        escape(title)
     )
 }
 
@@ -114,7 +118,7 @@ fn status(report: &Report) -> String {
 }
 
 /// A section with its heading; nothing if there is nothing in it.
-fn section(id: &str, title: &str, content: &str) -> String {
+pub(crate) fn section(id: &str, title: &str, content: &str) -> String {
     if content.is_empty() {
         return String::new();
     }
@@ -223,12 +227,44 @@ fn warnings(report: &Report) -> String {
     section("warnings", "Warnings", &format!("<ul class=\"warnings\">\n{items}</ul>\n"))
 }
 
+/// What the study found that the design comes from.
+fn study(study: &Study) -> String {
+    let signed = |s: &Statement| Statement { title: s.title.clone(), text: with_minus(&s.text) };
+    let mut content = statement_list(&study.verdict.iter().map(signed).collect::<Vec<_>>());
+    for own in &study.tables {
+        let columns: Vec<(&str, Column)> = own
+            .columns
+            .iter()
+            .map(|column| match column {
+                StudyColumn::Text(title) => (title.as_str(), Column::Text),
+                StudyColumn::Number(title) => (title.as_str(), Column::Number),
+                StudyColumn::Code(title) => (title.as_str(), Column::Code),
+            })
+            .collect();
+        let mut table = Table::new("study", &own.caption, &columns);
+        for row in &own.rows {
+            let cell = |(text, column): (&String, &(&str, Column))| match column.1 {
+                Column::Code => path(text),
+                Column::Number => escape(&with_minus(text)),
+                Column::Text => prose(&with_minus(text)),
+            };
+            table.row(&row.iter().zip(&columns).map(cell).collect::<Vec<_>>());
+        }
+        content.push_str(&table.finish());
+    }
+    content.extend(study.figures.iter().enumerate().map(|(i, f)| figure(i + 1, f)));
+    section("study", &escape(&study.title), &content)
+}
+
 fn figures(report: &Report) -> String {
-    let all: String = report.figures.iter().enumerate().map(|(i, f)| figure(i + 1, f)).collect();
+    // Numbered on from those of the study.
+    let before = report.study.as_ref().map_or(0, |s| s.figures.len());
+    let all: String = report.figures.iter().enumerate().map(|(i, f)| figure(before + i + 1, f)).collect();
     section("figures", "Figures", &all)
 }
 
-fn figure(number: usize, figure: &Figure) -> String {
+/// A figure with its words and its values.
+pub(crate) fn figure(number: usize, figure: &Figure) -> String {
     let (class, data) = match &figure.content {
         FigureContent::Plot(plot) => ("plot", data_table(number, plot)),
         FigureContent::Scene(_) => ("scene", String::new()),
@@ -301,11 +337,12 @@ fn parameters(report: &Report) -> String {
 }
 
 fn statements(id: &str, title: &str, statements: &[Statement]) -> String {
+    section(id, title, &statement_list(statements))
+}
+
+fn statement_list(statements: &[Statement]) -> String {
     let items = each(statements, |s| format!("<div><dt>{}</dt><dd>{}</dd></div>\n", prose(&s.title), prose(&s.text)));
-    if items.is_empty() {
-        return String::new();
-    }
-    section(id, title, &format!("<dl class=\"statements\">\n{items}</dl>\n"))
+    if items.is_empty() { items } else { format!("<dl class=\"statements\">\n{items}</dl>\n") }
 }
 
 fn sources(report: &Report) -> String {
@@ -340,17 +377,38 @@ fn work(report: &Report) -> String {
     section("accuracy", "Accuracy and work", &content)
 }
 
-fn provenance(report: &Report) -> String {
-    let variant = report.variant.as_ref().map_or_else(String::new, |v| format!(", variant <code>{}</code>", escape(v)));
+/// What repeats a result.
+pub(crate) struct Provenance<'a> {
+    pub(crate) version: &'a str,
+    pub(crate) input_name: &'a str,
+    pub(crate) variant: Option<&'a str>,
+    pub(crate) input_sha256: &'a str,
+    pub(crate) command: &'a str,
+}
+
+impl<'a> Provenance<'a> {
+    fn of(report: &'a Report) -> Self {
+        Self {
+            version: &report.version,
+            input_name: &report.input_name,
+            variant: report.variant.as_deref(),
+            input_sha256: &report.input_sha256,
+            command: &report.command,
+        }
+    }
+}
+
+pub(crate) fn provenance(from: &Provenance<'_>) -> String {
+    let variant = from.variant.map_or_else(String::new, |v| format!(", variant <code>{}</code>", escape(v)));
     let content = format!(
         "<dl class=\"statements\">\n<div><dt>Program</dt><dd>Forcewright {}</dd></div>\n\
          <div><dt>Read</dt><dd><code>{}</code>{variant}</dd></div>\n\
          <div><dt>SHA-256 of all read</dt><dd><code class=\"hash\">{}</code></dd></div>\n</dl>\n\
          <p>The same numbers again, on any machine:</p>\n<pre><code>{}</code></pre>\n",
-        escape(&report.version),
-        path(&report.input_name),
-        escape(&report.input_sha256),
-        escape(&report.command)
+        escape(from.version),
+        path(from.input_name),
+        escape(from.input_sha256),
+        escape(from.command)
     );
     section("provenance", "How to reproduce", &content)
 }

@@ -94,7 +94,8 @@ fn crowds_and_long_texts() {
 
 #[test]
 fn scenes_of_anything() {
-    let empty = Scene { items: vec![], scale: None, display: fixture::unit("mm"), description: String::new() };
+    let empty =
+        Scene { items: vec![], scale: None, words: ["as made", "under load"], display: fixture::unit("mm"), description: String::new() };
     sound(&svg::draw_scene(&empty, SceneSize::default()));
     for a in NUMBERS {
         for b in NUMBERS {
@@ -115,6 +116,7 @@ fn scenes_of_anything() {
                     Item::Marker { at, label: "max".to_owned() },
                 ],
                 scale: Some(scale),
+                words: ["as made", "under load"],
                 display: fixture::unit("mm"),
                 description: String::new(),
             };

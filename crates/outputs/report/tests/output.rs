@@ -6,7 +6,7 @@
 mod fixture;
 
 use forcewright_base::units::Dimension;
-use forcewright_model::{CheckState, FigureContent, StatusKind, Stroke};
+use forcewright_model::{CheckState, FigureContent, Item, Role, StatusKind, Stroke};
 use forcewright_report::svg::{self, Drawing, PlotSize, Rect, SceneSize};
 use forcewright_report::{csv, html, json};
 use roxmltree::{Document, ParsingOptions};
@@ -179,6 +179,16 @@ fn quantities_stand_over_their_units_and_lines_keep_their_order() {
     assert_eq!(named, labels[..count]);
     let scene = svg::draw_scene(&fixture::scene(), SceneSize::default());
     assert!(scene.texts.iter().any(|t| t.text.ends_with(" / MPa")) && has(&scene, "mirror line"));
+    // What is rigid and the envelope are named where they are drawn.
+    let mut more = fixture::scene();
+    assert!(!has(&scene, "envelope") && has(&scene, "rigid"));
+    more.items.retain(|i| !matches!(i, Item::Body { .. }));
+    assert!(!has(&svg::draw_scene(&more, SceneSize::default()), "rigid"));
+    for role in [Role::Rigid, Role::Envelope] {
+        more.items.push(Item::Line { points: vec![[0.0; 2], [0.01, 0.0]], width_m: 1e-3, role, values: None });
+    }
+    let named = svg::draw_scene(&more, SceneSize::default());
+    assert!(has(&named, "rigid") && has(&named, "envelope") && has(&named, "mirror line"));
     assert!(html::page(&fixture::report()).contains(">Displacement Δ / mm</th>"));
 }
 

@@ -23,6 +23,8 @@ pub(super) enum Swatch {
     Band,
     /// A marked point.
     Point,
+    /// A rigid part.
+    Body,
 }
 
 /// One entry.
@@ -82,6 +84,12 @@ fn swatch(canvas: &mut Canvas, swatch: &Swatch, x: f64, y: f64) {
             canvas.close();
         }
         Swatch::Band => band(canvas, &Rect::sized(x, y - 7.0, SWATCH, 14.0)),
+        Swatch::Body => {
+            canvas.rect(
+                &Rect::sized(x, y - 4.0, SWATCH, 8.0),
+                &format!(r#"{} stroke-width="1.4""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)),
+            );
+        }
         Swatch::Point => {
             canvas.circle([x + 0.5 * SWATCH, y], 4.5, &format!(r#"{} stroke-width="2""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)));
         }

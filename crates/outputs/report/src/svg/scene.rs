@@ -128,9 +128,9 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
             let width = view.thickness(*width_m);
             match role {
                 Role::Undeformed => placer.add_line(&at, 1.5, 0.6),
-                Role::Deformed | Role::DeformedCopy => placer.add_line(&at, width, 1.0),
+                Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy => placer.add_line(&at, width, 1.0),
                 Role::UndeformedCopy => placer.add_line(&at, 1.5, 0.5),
-                Role::Construction => placer.add_line(&at, 1.0, 0.3),
+                Role::Construction | Role::Envelope => placer.add_line(&at, 1.0, 0.3),
             }
             plain(canvas, &at, width, *role);
         }
@@ -177,12 +177,13 @@ fn outline(role: Role) -> String {
         Role::Undeformed => (Paint::Reference, 1.4, "5 3.5"),
         Role::UndeformedCopy => (Paint::Reference, 1.0, "2.5 3.5"),
         Role::Construction => (Paint::Muted, 1.0, "14 4 2 4"),
-        Role::Deformed | Role::DeformedCopy => (Paint::Ink, 1.4, ""),
+        Role::Envelope => (Paint::Limit, 1.2, "9 3"),
+        Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy => (Paint::Ink, 1.4, ""),
     };
     format!(r#"{} stroke-width="{width}" {}"#, paint.attributes("stroke"), legend::dashed(dash))
 }
 
-/// A line without values: thin and dashed as made, thick under load.
+/// A line without values: thin and dashed as made, thick under load, edged where it is rigid.
 fn plain(canvas: &mut Canvas, at: &[[f64; 2]], width: f64, role: Role) {
     match role {
         Role::Deformed | Role::DeformedCopy => {
@@ -190,6 +191,14 @@ fn plain(canvas: &mut Canvas, at: &[[f64; 2]], width: f64, role: Role) {
             canvas.open_stroke(Paint::Main, width, &format!(r#"stroke-linejoin="round"{opacity}"#));
             canvas.polyline(at, "");
             canvas.close();
+        }
+        Role::Rigid | Role::RigidCopy => {
+            let opacity = if role == Role::RigidCopy { r#" opacity="0.5""# } else { "" };
+            for (paint, width) in [(Paint::Ink, width + 1.6), (Paint::Body, width)] {
+                canvas.open_stroke(paint, width, &format!(r#"stroke-linejoin="round"{opacity}"#));
+                canvas.polyline(at, "");
+                canvas.close();
+            }
         }
         _ => canvas.polyline(at, &format!(r#"fill="none" {}"#, outline(role))),
     }
@@ -395,15 +404,19 @@ fn entries(scene: &Scene) -> Vec<Entry> {
     let line = |paint, width, dash| Swatch::Line { paint, width, dash, squares: false };
     let loaded = |role, paint, faded| if coloured(role) { Swatch::Values { faded } } else { line(paint, 5.0, "") };
     let construction = if count(Role::Construction) == 1 { "mirror line" } else { "construction line" };
-    [
-        (Role::Undeformed, line(Paint::Reference, 1.4, "5 3.5"), "as made"),
-        (Role::Deformed, loaded(Role::Deformed, Paint::Main, false), "under load"),
-        (Role::UndeformedCopy, line(Paint::Reference, 1.0, "2.5 3.5"), "copy as made"),
-        (Role::DeformedCopy, loaded(Role::DeformedCopy, Paint::Reference, true), "copy under load"),
-        (Role::Construction, line(Paint::Muted, 1.0, "14 4 2 4"), construction),
-    ]
-    .into_iter()
-    .filter(|(role, ..)| count(*role) > 0)
-    .map(|(_, swatch, text)| Entry { swatch, text: text.to_owned() })
-    .collect()
+    let is_rigid = |i: &Item| {
+        matches!(i, Item::Line { role: Role::Rigid | Role::RigidCopy, .. } | Item::Body { role: Role::Deformed | Role::DeformedCopy, .. })
+    };
+    let rigid = scene.items.iter().any(is_rigid).then(|| Entry { swatch: Swatch::Body, text: "rigid".to_owned() });
+    let [made, loaded_word] = scene.words;
+    let lines = [
+        (Role::Undeformed, line(Paint::Reference, 1.4, "5 3.5"), made.to_owned()),
+        (Role::Deformed, loaded(Role::Deformed, Paint::Main, false), loaded_word.to_owned()),
+        (Role::UndeformedCopy, line(Paint::Reference, 1.0, "2.5 3.5"), format!("copy {made}")),
+        (Role::DeformedCopy, loaded(Role::DeformedCopy, Paint::Reference, true), format!("copy {loaded_word}")),
+        (Role::Construction, line(Paint::Muted, 1.0, "14 4 2 4"), construction.to_owned()),
+        (Role::Envelope, line(Paint::Limit, 1.2, "9 3"), "envelope".to_owned()),
+    ];
+    let lines = lines.into_iter().filter(|(role, ..)| count(*role) > 0).map(|(_, swatch, text)| Entry { swatch, text });
+    lines.chain(rigid).collect()
 }
