@@ -1,12 +1,14 @@
 //! From a design to its behaviour: the equilibrium path, the force curve, the stress, the metrics.
 
+use std::borrow::Cow;
+
 use forcewright_base::units::Unit;
 use forcewright_beam::{Follow, Jump, NetworkError, Path, PeakStress, Point, Settings, Status, trace};
 use forcewright_contract::family::Progress;
 use forcewright_model as model;
 
 use crate::design::Design;
-use crate::force_curve::{Extrema, ForceCurve, Interval};
+use crate::force_curve::{Extrema, ForceCurve, Interval, Turn};
 use crate::metrics::METRICS;
 use crate::room::{Margin, Nearest, margin, nearest};
 use crate::sway::Sway;
@@ -15,6 +17,8 @@ use crate::sway::Sway;
 const STATIONS: [usize; 4] = [128, 256, 512, 1024];
 /// Interpolation error accepted, relative to the largest force.
 const INTERPOLATION: f64 = 1e-7;
+/// Parts of the distance of two stations in which a change of the tangent's sign is looked for.
+const TURN_PARTS: u32 = 8;
 /// The paper's operational range starts where the force reaches this fraction of its end value (section II).
 pub(crate) const RANGE_FRACTION: f64 = 0.95;
 
@@ -103,14 +107,24 @@ impl Behaviour {
             branch.or((path.before[stage].instability > 0).then_some(1.0)).map(|part| (stage, part))
         });
         let whole = matches!(path.status, Status::Complete | Status::NotResolved { .. });
-        let pick = |f: fn(&Point) -> f64, scale: f64| path.points.iter().map(|p| scale * f(p)).collect::<Vec<_>>();
-        // Under a growing force the displacement may turn back: then there is no force over it.
-        let ascends = path.points.windows(2).all(|p| p[0].displacement < p[1].displacement);
-        let curve = (path.points.len() >= 2 && ascends)
-            .then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)));
+        let curve = force_curve(&path.points, copies);
         let largest = path.points.iter().map(|p| copies * p.force.abs()).fold(0.0, f64::max);
         let interpolation_error = curve.as_ref().map_or(0.0, |c| if largest > 0.0 { c.error_n() / largest } else { 0.0 });
         Self { path, curve, copies, whole, unstable_from_m, branching_load, interpolation_error, snap: None, sway: None }
+    }
+
+    /// The part of it that a real part follows: all, or what lies before the path branches, which is then not the whole travel. Metrics
+    /// and checks are those of this part.
+    pub fn trusted(&self, design: &Design) -> Cow<'_, Self> {
+        let before = |p: &&Point| p.instability == 0 && self.unstable_from_m.is_none_or(|from| p.displacement <= from);
+        let count = if self.branching_load.is_some() { 0 } else { self.path.points.iter().take_while(before).count() };
+        if count == self.path.points.len() {
+            return Cow::Borrowed(self);
+        }
+        let mut path = self.path.clone();
+        path.points.truncate(count);
+        let sway = Sway::of(design, &path);
+        Cow::Owned(Self { whole: false, curve: force_curve(&path.points, self.copies), path, sway, ..self.clone() })
     }
 
     /// The largest stress up to the end of the path.
@@ -187,33 +201,55 @@ impl Behaviour {
     }
 
     /// First local maximum of the force and first minimum after it, found on the curve and placed where the tangent vanishes: next to a
-    /// limit point the force turns too quickly to be read between stations.
+    /// limit point the force turns too quickly to be read between stations, and where it soars the curve between them overshoots.
     pub fn extrema(&self) -> Extrema {
-        let Some(curve) = &self.curve else { return Extrema { max: None, min: None } };
-        let Extrema { max, min } = curve.extrema();
-        Extrema { max: max.map(|m| self.placed(m)), min: min.map(|m| self.placed(m)) }
+        let turns = self.curve.as_ref().map_or_else(Vec::new, ForceCurve::turns);
+        let max = turns.iter().filter(|t| t.is_max).find_map(|t| self.placed(t));
+        let after = |from: f64| move |t: &&Turn| !t.is_max && t.at > from;
+        let min = max.and_then(|(from, _)| turns.iter().filter(after(from)).find_map(|t| self.placed(t)));
+        Extrema { max, min }
     }
 
-    /// The extremum near the one that was read off the curve; that one itself if the tangent does not change its sign around it.
-    fn placed(&self, read: (f64, f64)) -> (f64, f64) {
+    /// Displacement and force of the extremum near one that was read off the curve, if the tangent changes its sign there.
+    fn placed(&self, read: &Turn) -> Option<(f64, f64)> {
         let points = &self.path.points;
-        let after = points.partition_point(|p| p.displacement <= read.0).clamp(1, points.len() - 1);
-        let stiffness = |x: f64| self.path.at(x).map_or(f64::NAN, |p| p.stiffness);
+        let after = points.partition_point(|p| p.displacement <= read.at).clamp(1, points.len() - 1);
         let (left, right) = (points[after - 1].control, points[after].control);
-        let exact = forcewright_base::roots::root(stiffness, left, right, 1e-14 * right).ok();
-        let exact = exact.and_then(|x| self.path.at(x).ok());
-        exact.map_or(read, |p| (p.displacement, self.copies * p.force))
+        let sign = if read.is_max { 1.0 } else { -1.0 };
+        let stiffness = |x: f64| self.path.at(x).map_or(f64::NAN, |p| sign * p.stiffness);
+        let turns = |[a, b]: [f64; 2]| a >= 0.0 && b < 0.0;
+        // Both stations say it, or the curve turns twice between them.
+        let (from, to) = if turns([after - 1, after].map(|i| sign * points[i].stiffness)) {
+            (left, right)
+        } else {
+            let place = |i: u32| left + (right - left) * f64::from(i) / f64::from(TURN_PARTS);
+            let values: Vec<f64> = (0..=TURN_PARTS).map(|i| stiffness(place(i))).collect();
+            let part = (0..TURN_PARTS).zip(values.windows(2)).find(|(_, v)| turns([v[0], v[1]]))?.0;
+            (place(part), place(part + 1))
+        };
+        let exact = forcewright_base::roots::root(stiffness, from, to, 1e-14 * right).ok()?;
+        self.path.at(exact).ok().map(|p| (p.displacement, self.copies * p.force))
     }
 
     /// Where a force-driven device would jump: from the first local maximum, to the displacement beyond it that carries the same force
     /// again, if the path reaches it.
     pub fn jump(&self) -> Option<(f64, Option<f64>)> {
         let curve = self.curve.as_ref()?;
-        let (from, level) = self.extrema().max?;
+        let Extrema { max, min } = self.extrema();
+        let (from, level) = max?;
         // The force falls first: the same level is passed again only beyond the minimum.
-        let to = curve.extrema().min.and_then(|(dip, _)| curve.crossings(level).into_iter().find(|x| *x > dip));
+        let to = min.and_then(|(dip, _)| curve.crossings(level).into_iter().find(|x| *x > dip));
         Some((from, to))
     }
+}
+
+/// The force of the whole layout over the displacement; `None` for fewer than two states, or where the displacement turns back, as it
+/// may under a growing force.
+fn force_curve(points: &[Point], copies: f64) -> Option<ForceCurve> {
+    let pick = |f: fn(&Point) -> f64, scale: f64| points.iter().map(|p| scale * f(p)).collect::<Vec<_>>();
+    let ascends = points.windows(2).all(|p| p[0].displacement < p[1].displacement);
+    (points.len() >= 2 && ascends)
+        .then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)))
 }
 
 /// Stations at which the path is followed beyond its limit point.
@@ -289,9 +325,9 @@ impl Measured {
 }
 
 /// Band used for the flat interval where the project asks for none: the paper's 5 % (section II).
-const PAPER_BAND: f64 = 0.05;
+pub(crate) const PAPER_BAND: f64 = 0.05;
 
-/// Every metric that the behaviour has.
+/// Every metric that the behaviour has; of [`Behaviour::trusted`], those that a real part has.
 pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     let mut m = Measured { values: vec![None; METRICS.len()], ..Measured::default() };
     m.set("length_ratio_max", length_ratio(design));

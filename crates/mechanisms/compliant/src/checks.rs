@@ -49,6 +49,8 @@ struct Comparison {
     missing: String,
     /// Whether the value is that of a path that ends early: it can show a miss, but not that the limit is met.
     partial: bool,
+    /// Whether the limit is broken although there is no value: what it is about falls without limit.
+    broken: bool,
 }
 
 impl Comparison {
@@ -65,6 +67,7 @@ impl Comparison {
                 };
                 (state, margin)
             }
+            _ if self.broken => (CheckState::Missed, None),
             _ => (CheckState::NotAssessed, None),
         };
         // Nothing is said about a limit that the rest of the path may still break.
@@ -92,6 +95,9 @@ impl Comparison {
         }
     }
 }
+
+/// The metric that is known although its value may not be finite.
+const LATERAL: &str = "lateral_stiffness_min";
 
 /// Thinner than this part of itself, a beam is another design: such advice helps nobody.
 const PLAUSIBLE: f64 = 0.4;
@@ -121,13 +127,24 @@ fn shown_below(x_m: f64, unit: &Unit) -> String {
 impl Context<'_> {
     /// Why a check over the whole travel has no value, or no final one.
     fn unreached(&self) -> String {
+        if self.behaviour.branching_load.is_some() {
+            return "a real part leaves the computed shape before the last load begins; see the status".to_owned();
+        }
+        if let Some(from) = self.behaviour.unstable_from_m {
+            let from = format_si(from, &self.design.units.displacement, 4);
+            return format!("the path branches at Δ = {from}: beyond, a real part leaves the computed shape; see the status");
+        }
         let reach = self.behaviour.path.points.last().map_or(0.0, |p| p.displacement);
         format!("the path ends at Δ = {}, before the full travel; see the status", format_si(reach, &self.design.units.displacement, 4))
     }
 
-    /// Said behind a value of a path that ends early.
+    /// Said behind a value of a path that ends early, or is followed only up to where it branches.
     fn so_far(&self) -> &'static str {
-        if self.behaviour.whole { "" } else { ", on the computed part" }
+        match (self.behaviour.whole, self.behaviour.unstable_from_m) {
+            (true, _) => "",
+            (false, Some(_)) => ", before the path branches",
+            (false, None) => ", on the computed part",
+        }
     }
 
     /// COMP001: the band needed over the best window of the required stroke.
@@ -160,6 +177,7 @@ impl Context<'_> {
             fix,
             missing,
             partial: false,
+            broken: false,
         };
         Some(comparison.judge())
     }
@@ -210,6 +228,7 @@ impl Context<'_> {
             ),
             missing: self.unreached(),
             partial: false,
+            broken: false,
         };
         Some(comparison.judge())
     }
@@ -284,6 +303,7 @@ impl Context<'_> {
                 None => self.unreached(),
             },
             partial: !self.behaviour.whole || unknown.is_some(),
+            broken: false,
         };
         Some(comparison.judge())
     }
@@ -306,6 +326,7 @@ impl Context<'_> {
             fix,
             missing: self.unreached(),
             partial: !self.behaviour.whole,
+            broken: false,
         }
         };
         let show = |x: f64| format_si(x, &self.design.units.displacement, 4);
@@ -369,11 +390,26 @@ impl Context<'_> {
             scale: sides.reduce(f64::min),
             basis: "surfaces of the drawn beams, at rest and over the travel; the margin is relative to the smaller side of the envelope"
                 .to_owned(),
-            fix: "move or reshape that beam, shorten the travel, or widen the envelope there".to_owned(),
+            fix: if found.is_some_and(|m| m.u <= 0.0 || m.u >= 1.0) {
+                "the end of a beam is round: it reaches half the thickness beyond its node; widen the envelope by that, or move the node"
+            } else {
+                "move or reshape that beam, shorten the travel, or widen the envelope there"
+            }
+            .to_owned(),
             missing: self.unreached(),
             partial: !self.behaviour.whole,
+            broken: false,
         };
         Some(comparison.judge())
+    }
+
+    /// What mends a broken limit on a metric.
+    fn limit_fix(&self, name: &str, broken: bool) -> String {
+        let sways = self.behaviour.sway.and_then(|s| s.from_m).filter(|_| name == LATERAL);
+        let Some(from) = sways else { return "change the design, or relax the limit".to_owned() };
+        let from = format_si(from, &self.design.units.displacement, 4);
+        let how = if broken { "free to turn, the block is not held at all" } else { "the block sways" };
+        format!("without a guide {how} from Δ = {from} on (W0510): guide it, shorten the travel, or change the shape")
     }
 
     /// COMP006: limits on metrics.
@@ -383,7 +419,13 @@ impl Context<'_> {
             let Some(info) = METRICS.get(*index) else { continue };
             for (limit, sense, suffix) in [(min, Sense::AtLeast, "at least"), (max, Sense::AtMost, "at most")] {
                 let Some(limit) = *limit else { continue };
-                let value = self.measured.value(*index);
+                let (value, partial, broken) = match self.behaviour.sway {
+                    // Known as far as the path goes, and below any limit where the block turns over.
+                    Some(sway) if info.name == LATERAL => {
+                        (sway.least_n_per_m, !self.behaviour.whole, sense == Sense::AtLeast && sway.least_n_per_m.is_none())
+                    }
+                    _ => (self.measured.value(*index), false, false),
+                };
                 let comparison = Comparison {
                     code: "COMP006",
                     name: info.name.to_owned(),
@@ -395,14 +437,18 @@ impl Context<'_> {
                     display: display_unit(self.design, *index),
                     scale: None,
                     basis: info.doc.to_owned(),
-                    fix: "change the design, or relax the limit".to_owned(),
+                    fix: self.limit_fix(info.name, broken),
                     missing: match info.name {
                         _ if !self.behaviour.whole => self.unreached(),
+                        LATERAL if value.is_none() && !broken && self.behaviour.sway.is_some() => {
+                            "free to turn, the block is not held at all at some displacement; there is no largest value".to_owned()
+                        }
                         "envelope_margin" => "there is no envelope; give `requirements.envelope`".to_owned(),
                         "clearance_min" => "no two surfaces of this design face each other; remove the limit".to_owned(),
                         _ => "the design has no such value; see the status and the meaning of the metric".to_owned(),
                     },
-                    partial: false,
+                    partial,
+                    broken,
                 };
                 all.push(comparison.judge());
             }

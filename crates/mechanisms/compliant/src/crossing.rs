@@ -123,7 +123,7 @@ impl<'a> Axes<'a> {
         let count = design.network.beams.len();
         let mut points = Vec::with_capacity(count * (CHORDS + 1));
         for beam in &design.network.beams {
-            let [x, y] = design.network.nodes.get(beam.start).map_or([0.0; 2], |n| n.position_m);
+            let [x, y] = design.start_m(beam);
             points.extend((0..=CHORDS).map(|i| {
                 let p = beam.shape.point_m(place(i));
                 [x + p[0], y + p[1]]
@@ -203,15 +203,14 @@ struct Joints {
 impl Joints {
     fn of(design: &Design, first: usize, second: usize, touch_m: f64) -> Self {
         let (one, other) = (&design.network.beams[first], &design.network.beams[second]);
-        let position = |node: usize| design.network.nodes.get(node).map(|n| n.position_m);
-        // Two clamps at the same place are one place of the ground.
-        let same = |a: usize, b: usize| {
-            a == b || position(a).zip(position(b)).is_some_and(|(p, q)| (p[0] - q[0]).abs().max((p[1] - q[1]).abs()) <= touch_m)
-        };
+        // Where the ends are at rest; two clamps at the same place are one place of the ground.
+        let ends = |beam: &Beam| [design.start_m(beam), design.end_m(beam)];
+        let same = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).abs().max((p[1] - q[1]).abs()) <= touch_m;
         let joined = if first == second {
-            [[false, same(one.start, one.end)], [false; 2]]
+            let [from, to] = ends(one);
+            [[false, same(from, to)], [false; 2]]
         } else {
-            [one.start, one.end].map(|a| [other.start, other.end].map(|b| same(a, b)))
+            ends(one).map(|a| ends(other).map(|b| same(a, b)))
         };
         let chord = |length: f64| length / CHORDS as f64;
         let lengths = [one.shape.length_m(), other.shape.length_m()];
@@ -236,9 +235,10 @@ fn thickest_m(beam: &Beam) -> f64 {
 /// Lays the deformed axis of a beam from its start: what [`BeamState::shape_m`] gives, but each chord goes on from the one before, for a
 /// fraction of the work.
 fn lay(beam: &Beam, state: &BeamState, theory: Theory, start: [f64; 2], points: &mut Vec<[f64; 2]>) {
-    // Rigid ends and varying thickness are left to the engine.
+    // Rigid ends, starts on a body and varying thickness are left to the engine.
     let [from, to] = state.flexible();
-    if !beam.profile.is_empty() || from > 0.0 || to < 1.0 {
+    let on_arm = beam.arms_m[0].iter().any(|v| v.abs() > 0.0);
+    if on_arm || !beam.profile.is_empty() || from > 0.0 || to < 1.0 {
         points.extend((0..=CHORDS).map(|i| state.shape_m(place(i))));
         return;
     }

@@ -1,11 +1,11 @@
 //! From what was typed to a design: references checked, catalogue values in place, SI numbers.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
-use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Quantity, Unit};
-use forcewright_beam::{Beam, Joint, Joints, Network, Node, Rotation, Section, Settings, Shape, Support, Theory, ThroughError};
+use forcewright_beam::{Beam, Joint, Joints, Network, Node, Point, Section, Settings, Shape, Theory, ThroughError};
 use forcewright_contract::describe::{Along, Located, Member, Origin, Slot};
 
+use crate::bodies::{self, Body, DrawnNode, Grouping, find_node};
 use crate::loads::{self, Control, Loads};
 use crate::material::{Material, check_complete, fill_materials, typed_material};
 use crate::metrics::METRICS;
@@ -19,14 +19,20 @@ pub struct Design {
     pub title: String,
     /// Nodes, beams, supports and the drive of the drawn network; members in the order of their names.
     pub network: Network,
-    /// Names of the nodes, in the order of the network.
+    /// Names of the nodes, in the order of the network; of a body the node at whose place it lies.
     pub node_names: Vec<String>,
+    /// The nodes as drawn, in the order of their names: without bodies those of the network.
+    pub drawn: Vec<DrawnNode>,
+    /// The rigid bodies, in the order of their names.
+    pub bodies: Vec<Body>,
     /// Names of the beams, in the order of the network.
     pub beam_names: Vec<String>,
     /// The mirror line, if there is a mirrored half.
     pub mirror: Option<Mirror>,
     /// The node of the last load.
     pub load_node: usize,
+    /// The drawn nodes of all loads, in order.
+    pub loaded: Vec<usize>,
     /// Unit vector of the displacement.
     pub direction: [f64; 2],
     /// What grows along the path: the displacement or the force.
@@ -55,6 +61,30 @@ impl Design {
     /// How many copies of the drawn network share the force.
     pub fn copies(&self) -> f64 {
         if self.mirror.is_some() { 2.0 } else { 1.0 }
+    }
+
+    /// Where a beam starts at rest, m.
+    pub fn start_m(&self, beam: &Beam) -> [f64; 2] {
+        self.attached_m(beam.start, beam.arms_m[0])
+    }
+
+    /// Where a beam ends at rest, m.
+    pub fn end_m(&self, beam: &Beam) -> [f64; 2] {
+        self.attached_m(beam.end, beam.arms_m[1])
+    }
+
+    /// Where a drawn node is in a state, m.
+    pub fn moved_m(&self, drawn: &DrawnNode, point: &Point) -> [f64; 2] {
+        let (Some(node), Some(state)) = (self.network.nodes.get(drawn.node), point.nodes.get(drawn.node)) else { return drawn.position_m };
+        let (at, moved) = (node.position_m, state.displacement_m);
+        let [x, y] = [drawn.position_m[0] - at[0], drawn.position_m[1] - at[1]];
+        let (sin, cos) = forcewright_base::maths::sin_cos(state.rotation_rad);
+        [at[0] + moved[0] + cos * x - sin * y, at[1] + moved[1] + sin * x + cos * y]
+    }
+
+    fn attached_m(&self, node: usize, arm_m: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.network.nodes.get(node).map_or([0.0; 2], |n| n.position_m);
+        [x + arm_m[0], y + arm_m[1]]
     }
 
     /// How its path is computed.
@@ -195,17 +225,18 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     let used = fill_materials(spec, diagnostics);
     let requirements = requirements_of(spec, used.materials.iter().all(|m| m.yield_pa.is_some()), diagnostics);
     let mut builder = Builder { spec, diagnostics, place };
-    let (network, loads) = builder.network()?;
-    let mirror = builder.mirror(&network, &loads);
+    let built = builder.network()?;
+    let mirror = builder.mirror(&built);
     if diagnostics.has_errors() {
         return None;
     }
-    check_network(&network, spec, place, diagnostics);
+    let Built { network, loads, grouping, drawn, bodies, loaded } = built;
+    check_network(&network, &grouping, spec, place, diagnostics);
     check_held(&network, spec, diagnostics);
     let joints = joints_of(spec);
     check_joints(&network, joints, spec, place, diagnostics);
     if let Some(mirror) = mirror {
-        check_mirror(&network, mirror, spec, diagnostics);
+        check_mirror(&network, &drawn, mirror, spec, diagnostics);
     }
     if diagnostics.has_errors() {
         return None;
@@ -214,8 +245,11 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     Some(Design {
         title: spec.header.title.as_ref().map_or_else(|| "Compliant mechanism".to_owned(), |t| t.value.clone()),
         load_node: network.drive.node(),
+        loaded,
         network,
-        node_names: spec.design.nodes.iter().map(|n| n.name.value.clone()).collect(),
+        node_names: grouping.reference.iter().filter_map(|d| drawn.get(*d)).map(|n| n.name.clone()).collect(),
+        drawn,
+        bodies,
         beam_names: spec.design.beams.iter().map(|b| b.name.value.clone()).collect(),
         mirror,
         direction: loads.direction,
@@ -309,10 +343,12 @@ fn requirements_of(spec: &Spec, yield_is_known: bool, diagnostics: &mut Diagnost
                 }
                 continue;
             };
+            check_order("", bounds.min.as_ref(), bounds.max.as_ref(), diagnostics);
             limits.push((index, min.map(|q| q.si), max.map(|q| q.si), unit));
         }
     }
     debug_assert_eq!(requirements.limits.bounds.len(), METRICS.len());
+    check_order("stiffness.", requirements.stiffness.min.as_ref(), requirements.stiffness.max.as_ref(), diagnostics);
     let envelope = envelope_of(requirements, sound, diagnostics);
     Some(Requirements {
         envelope,
@@ -323,6 +359,21 @@ fn requirements_of(spec: &Spec, yield_is_known: bool, diagnostics: &mut Diagnost
         stiffness_max: si(requirements.stiffness.max.as_ref()),
         limits,
     })
+}
+
+/// A least value above the largest one is met by nothing.
+fn check_order(of: &str, min: Option<&Located<Quantity>>, max: Option<&Located<Quantity>>, diagnostics: &mut Diagnostics) {
+    let (Some(min), Some(max)) = (min, max) else { return };
+    if min.value.si <= max.value.si {
+        return;
+    }
+    let message = format!("nothing is at least {} and at most {}", min.value, max.value);
+    let error = Diagnostic::error("E0204", max.span, message).label("less than the least value");
+    diagnostics.push(if min.origin == Origin::File {
+        error.related(min.span, "the least value").help("exchange the two, or remove one")
+    } else {
+        error.help(format!("give `{of}min` as well: without it, it is {}", min.value))
+    });
 }
 
 /// The box; a side that is not given is infinitely far away.
@@ -380,6 +431,16 @@ fn check_stroke(spec: &Spec, sound: bool, diagnostics: &mut Diagnostics) {
     }
 }
 
+/// What the builder has made of the drawing.
+struct Built {
+    network: Network,
+    loads: Loads,
+    grouping: Grouping,
+    drawn: Vec<DrawnNode>,
+    bodies: Vec<Body>,
+    loaded: Vec<usize>,
+}
+
 struct Builder<'a> {
     spec: &'a Spec,
     diagnostics: &'a mut Diagnostics,
@@ -408,46 +469,38 @@ impl Builder<'_> {
         self.diagnostics.push(diagnostic);
     }
 
-    /// The index of the node that a name refers to.
+    /// The index of the drawn node that a name refers to.
     fn node(&mut self, name: &str, span: Span) -> Option<usize> {
-        let nodes = &self.spec.design.nodes;
-        let found = nodes.iter().position(|n| n.name.value == name);
-        if found.is_none() {
-            let names = || nodes.iter().map(|n| n.name.value.as_str());
-            let help = closest(name, names()).map_or_else(
-                || format!("the design has {}", names().collect::<Vec<_>>().join(", ")),
-                |near| format!("did you mean `{near}`?"),
-            );
-            self.error(
-                Diagnostic::error("E0304", span, format!("there is no node `{name}`")).label("not defined in `design.nodes`").help(help),
-            );
-        }
-        found
+        find_node(self.spec, name, span, self.diagnostics)
     }
 
     /// The network with its loads; `None` after errors.
-    fn network(&mut self) -> Option<(Network, Loads)> {
+    fn network(&mut self) -> Option<Built> {
         let spec = self.spec;
         self.check_materials();
-        let drawn: Vec<Option<Drawn<'_>>> = spec.design.beams.iter().map(|b| self.drawn(b)).collect();
-        let supports: Vec<Option<Support>> = spec.design.nodes.iter().map(|n| self.support(n)).collect();
-        let nodes: Vec<Option<usize>> =
+        let loaded: Vec<Option<usize>> =
             spec.load.iter().map(|load| load.value.node.as_ref().and_then(|n| self.node(&n.value, n.span))).collect();
-        let loads = loads::resolve(spec, &nodes, self.place, self.diagnostics);
+        let (grouping, supports) = bodies::resolve(spec, &loaded, self.diagnostics);
+        let drawn: Vec<Option<Drawn<'_>>> = spec.design.beams.iter().map(|b| self.drawn(b, &grouping)).collect();
+        let moved: Vec<Option<usize>> = loaded.iter().map(|node| node.map(|n| grouping.owner[n])).collect();
+        let loads = loads::resolve(spec, &moved, self.place, self.diagnostics);
         let drawn: Vec<Drawn<'_>> = drawn.into_iter().collect::<Option<_>>()?;
         let positions = self.positions(&drawn)?;
-        let beams: Vec<Option<Beam>> = drawn.iter().map(|d| self.beam(d, &positions)).collect();
+        let beams: Vec<Option<Beam>> = drawn.iter().map(|d| self.beam(d, &positions, &grouping)).collect();
         let beams = beams.into_iter().collect::<Option<Vec<_>>>()?;
-        let nodes = positions
+        let nodes = grouping
+            .reference
             .iter()
             .zip(supports)
-            .map(|(at, support)| Some(Node { position_m: *at, support: support? }))
+            .map(|(drawn, support)| Some(Node { position_m: positions[*drawn], support: support? }))
             .collect::<Option<Vec<_>>>()?;
         let loads = loads?;
-        Some((Network { before: loads.before.clone(), ..Network::new(nodes, beams, loads.drive) }, loads))
+        let network = Network { before: loads.before.clone(), ..Network::new(nodes, beams, loads.drive) };
+        let loaded = loaded.into_iter().collect::<Option<Vec<_>>>()?;
+        Some(Built { loaded, drawn: grouping.drawn(spec, &positions), bodies: grouping.bodies(spec), network, loads, grouping })
     }
 
-    fn drawn<'b>(&mut self, member: &'b Member<spec::Beam>) -> Option<Drawn<'b>> {
+    fn drawn<'b>(&mut self, member: &'b Member<spec::Beam>, grouping: &Grouping) -> Option<Drawn<'b>> {
         let beam = &member.value;
         let form = self.form(member);
         let ends = beam.between.as_ref()?;
@@ -459,6 +512,16 @@ impl Builder<'_> {
                 Diagnostic::error("E0502", ends.span, format!("beam `{}` starts and ends at the same node", member.name.value))
                     .label("the same twice")
                     .help("name two different nodes"),
+            );
+            return None;
+        }
+        if let Some(body) = grouping.body_of_both(start, end).and_then(|b| self.spec.design.bodies.get(b)) {
+            let message = format!("beam `{}` joins body `{}` with itself", member.name.value, body.name.value);
+            self.error(
+                Diagnostic::error("E0502", ends.span, message)
+                    .label("cannot bend")
+                    .related(body.name.span, "joins both nodes")
+                    .help("remove the beam, or take one of its nodes out of the body"),
             );
             return None;
         }
@@ -488,6 +551,8 @@ impl Builder<'_> {
         .collect();
         let name = &member.name;
         match given[..] {
+            // A shape that was given but not understood has been reported.
+            [] if self.diagnostics.in_file_order().iter().any(|d| d.code.starts_with("E02") || d.code == "E0311") => None,
             [] => {
                 self.error(
                     Diagnostic::error("E0302", name.span, format!("beam `{}` has no shape", name.value))
@@ -544,41 +609,6 @@ impl Builder<'_> {
         }
     }
 
-    fn support(&mut self, member: &Member<spec::Node>) -> Option<Support> {
-        let node = &member.value;
-        let stray = |what: &str, span: Span| {
-            Diagnostic::error("E0504", span, format!("`{what}` is for sliders")).help("add `support = \"slider\"`, or remove it")
-        };
-        let kind = node.support.as_ref().map(|s| s.value);
-        if kind != Some("slider") {
-            if let Some(direction) = &node.direction {
-                self.error(stray("direction", direction.span));
-            }
-            if let Some(rotation) = &node.rotation {
-                self.error(stray("rotation", rotation.span));
-            }
-        }
-        match kind {
-            Some("clamped") => Some(Support::Clamped),
-            Some("pinned") => Some(Support::Pinned),
-            Some("parallel") => Some(Support::Parallel),
-            Some(_) => {
-                let Some(direction) = &node.direction else {
-                    let span = node.support.as_ref().map_or(member.name.span, |s| s.span);
-                    self.error(
-                        Diagnostic::error("E0504", span, "a slider needs a `direction`")
-                            .label("in which direction?")
-                            .help("add, for example, `direction = [0, 1]`"),
-                    );
-                    return None;
-                };
-                let rotation = if node.rotation.as_ref().is_some_and(|r| r.value == "free") { Rotation::Free } else { Rotation::Fixed };
-                Some(Support::Slider { direction: unit(direction.value), rotation })
-            }
-            None => Some(Support::Free),
-        }
-    }
-
     /// Every material that a beam is of is complete.
     fn check_materials(&mut self) {
         let spec = self.spec;
@@ -625,7 +655,7 @@ impl Builder<'_> {
         at.into_iter().collect()
     }
 
-    fn beam(&mut self, drawn: &Drawn<'_>, at: &[[f64; 2]]) -> Option<Beam> {
+    fn beam(&mut self, drawn: &Drawn<'_>, at: &[[f64; 2]], grouping: &Grouping) -> Option<Beam> {
         let (member, beam) = (drawn.member, &drawn.member.value);
         let name = &member.name.value;
         let (from, to) = (at[drawn.start], at[drawn.end]);
@@ -671,7 +701,12 @@ impl Builder<'_> {
             depth_m: si(self.spec.design.depth.as_ref())?,
             poisson: si(material.poisson_ratio.as_ref()),
         };
-        Some(Beam { start_joint, end_joint, profile, ..Beam::new(drawn.start, drawn.end, shape, section) })
+        let [start, end] = [drawn.start, drawn.end].map(|d| grouping.owner[d]);
+        let arms_m = [(drawn.start, from), (drawn.end, to)].map(|(d, end)| {
+            let node = at[grouping.reference[grouping.owner[d]]];
+            [end[0] - node[0], end[1] - node[1]]
+        });
+        Some(Beam { start_joint, end_joint, profile, arms_m, ..Beam::new(start, end, shape, section) })
     }
 
     /// The shape through points; a fault is reported at the point.
@@ -699,7 +734,7 @@ impl Builder<'_> {
     }
 
     /// `x = 0` or `y = 2 mm`; the load must move along the line.
-    fn mirror(&mut self, network: &Network, loads: &Loads) -> Option<Mirror> {
+    fn mirror(&mut self, built: &Built) -> Option<Mirror> {
         let text = self.spec.layout.mirror.as_ref()?;
         let parsed = text.value.split_once('=').and_then(|(axis, value)| {
             let value = value.trim();
@@ -718,8 +753,9 @@ impl Builder<'_> {
             );
             return None;
         };
-        let on_line = |node: usize| network.nodes.get(node).is_some_and(|n| mirror.holds(network, n.position_m));
-        loads::check_mirror(self.spec, loads, (mirror, text.span), on_line, self.diagnostics);
+        // A body lies on the line with any of its nodes.
+        let on_line = |node: usize| built.drawn.iter().any(|d| d.node == node && mirror.holds(&built.network, d.position_m));
+        loads::check_mirror(self.spec, &built.loads, (mirror, text.span), on_line, self.diagnostics);
         Some(mirror)
     }
 }

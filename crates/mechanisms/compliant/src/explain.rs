@@ -6,7 +6,7 @@ const fn code(code: &'static str, title: &'static str, text: &'static str) -> Ex
     Explanation { code, title, text }
 }
 
-/// Checks `COMP…`, errors of the design `E05…`, warnings `W05…`.
+/// Checks `COMP…`, errors of the design `E05…`, of what studies ask of it `E03…`, warnings `W05…`.
 pub(crate) const CODES: &[Explanation] = &[
     code(
         "COMP001",
@@ -37,7 +37,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "COMP007",
         "envelope",
-        "Smallest distance of the surfaces of the drawn beams to the sides of `requirements.envelope`, at rest and over the travel; negative where a beam sticks out. The mirrored half stays in the mirrored envelope. Blocks and clamps are not looked at.\n\nThe end of a beam is cut square: ending on a side at a right angle, it touches the side and the distance is 0. The design box of Lan, Wang & Chen 2010 (Table 1, constraint (ii)) holds the axes, with n1, n2 and n5 on its sides; to ask for the same, widen it by half the thickness.",
+        "Smallest distance of the surfaces of the drawn beams to the sides of `requirements.envelope`, at rest and over the travel; negative where a beam sticks out. The mirrored half stays in the mirrored envelope. Blocks and clamps are not looked at.\n\nA beam is all that is within half its thickness of its axis, as for `clearance_min`: its ends are round, and a beam that ends on a side sticks out by half its thickness there. Draw the side half a thickness behind the clamps. The design box of Lan, Wang & Chen 2010 (Table 1, constraint (ii)) holds the axes, with n1, n2 and n5 on its sides; to ask for the same, widen it by half the thickness.",
     ),
     code(
         "E0501",
@@ -47,7 +47,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "E0502",
         "a beam does not fit between its nodes",
-        "A beam given by `angle` and `length` must end where its node is; a beam joins two different nodes. Printed nodes and shapes are usually rounded and do not close exactly: give one of the two and let the other follow. With `bend`, c0 and the length follow from the nodes, so such a beam always closes.",
+        "A beam given by `angle` and `length` must end where its node is; a beam joins two different nodes, and not two of one rigid body. Printed nodes and shapes are usually rounded and do not close exactly: give one of the two and let the other follow. With `bend`, c0 and the length follow from the nodes, so such a beam always closes.",
     ),
     code(
         "E0503",
@@ -75,7 +75,7 @@ pub(crate) const CODES: &[Explanation] = &[
     ),
     code(
         "E0512",
-        "nothing of a beam is left to bend",
+        "too little of a beam is left to bend",
         "With `model.joints = \"overlap\"` a beam is rigid as far as it lies inside the other beams at its nodes. Of this one less than a twentieth is left: the beams are too thick for their length, or leave a node nearly side by side, where the blocks that they form grow long.",
     ),
     code(
@@ -83,7 +83,31 @@ pub(crate) const CODES: &[Explanation] = &[
         "a node is moved twice the same way",
         "Loads are carried out in order, and each is held at its end: what has been moved stays there. A second load cannot move the same node along the same direction, nor at another angle than a right one, nor turn it twice. Forces and moments may act on one node as often as they like.",
     ),
-    code("E0510", "a loose node", "No beam ends at this node."),
+    code(
+        "E0510",
+        "a loose node",
+        "No beam ends at this node, or at any node of this body. Within a body a node that no beam ends at is welcome: it can be loaded, like the end of a lever.",
+    ),
+    code(
+        "E0514",
+        "a node is named twice by bodies",
+        "`[design.bodies]` joins nodes into rigid bodies, such as `block = { nodes = [\"n5\", \"n7\"] }`. A node is in one body at most, and once: two bodies that share a node would be one body.",
+    ),
+    code(
+        "E0515",
+        "a body is held or loaded at two places",
+        "A body that keeps its angle (`clamped`, `parallel`, a slider that does not turn) only shifts: all of its nodes move alike, and it may be held as a whole and loaded at any of them. A body that can turn moves otherwise at each of its nodes. There, one node is the reference: the one with the support, else the one that is loaded. A support or a load at another node, or a second support, is not available; moments and rotations may be written at any node.\n\nWays out: load the node that is held, or keep the body from turning, or draw a part of the body as a short thick beam of a stiff material.",
+    ),
+    code(
+        "E0314",
+        "a node does not lie on its line",
+        "A node with `on = { line = [[\"x\", \"y\"], [\"x\", \"y\"]] }` stays on the straight line between these two points when a study moves it: one number, from 0 at the first end to 1 at the other, stands for both coordinates. So the line has two ends, which differ, and `at` lies between them, to a millionth of its length.\n\nWhere `[optimise.variables]` gives ranges to the coordinates, the node also stays within those.",
+    ),
+    code(
+        "E0316",
+        "the load does not suit a study",
+        "Optimisation and tolerance analysis compare force curves over the same displacements, from rest. So the project has one load, and it prescribes a displacement: `travel`. Designs that are driven by a force, a moment or a rotation, or that are loaded before, are analysed by `solve` and by `sweep`.",
+    ),
     code(
         "W0501",
         "a beam is not slender",
@@ -128,5 +152,10 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0509",
         "a material that no beam is of",
         "`[material.<name>]` describes a material for beams that say `material = \"<name>\"`. None does: perhaps the name is misspelt, or the line at the beam is missing.",
+    ),
+    code(
+        "W0511",
+        "a requirement that a study does not look at",
+        "Studies compute what they need many thousand times, and leave out what would need the whole analysis. A search checks such a requirement at its end, in the full analysis of the design found. A tolerance analysis does not count it: its yield is that of all other requirements. `solve` checks everything.",
     ),
 ];

@@ -38,6 +38,15 @@ pub struct Extrema {
     pub min: Option<(f64, f64)>,
 }
 
+/// A place at which the curve turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// Displacement, m.
+    pub at: f64,
+    /// Whether the force has a maximum there, not a minimum.
+    pub is_max: bool,
+}
+
 /// Ratios are compared with this slack, so that an interval that touches a peak exactly is not lost to rounding.
 const SLACK: f64 = 1e-12;
 
@@ -74,6 +83,26 @@ impl ForceCurve {
         let t = (x - self.x[i]) / (self.x[i + 1] - self.x[i]);
         let [a, b, c, d] = self.cubic(i);
         a + t * (b + t * (c + t * d))
+    }
+
+    /// Slope at a displacement, N/m.
+    pub fn slope(&self, x: f64) -> f64 {
+        let i = self.segment(x);
+        let h = self.x[i + 1] - self.x[i];
+        let t = (x - self.x[i]) / h;
+        let [_, b, c, d] = self.cubic(i);
+        (b + t * (2.0 * c + t * 3.0 * d)) / h
+    }
+
+    /// Least slope, N/m: at a station, or where a segment's parabola of slopes has its vertex.
+    pub fn least_slope(&self) -> f64 {
+        let stations = self.k.iter().copied().fold(f64::INFINITY, f64::min);
+        let inside = (0..self.x.len() - 1).filter_map(|i| {
+            let [_, _, c, d] = self.cubic(i);
+            let t = -c / (3.0 * d);
+            (d > 0.0 && t > 0.0 && t < 1.0).then(|| self.slope(self.x[i] + t * (self.x[i + 1] - self.x[i])))
+        });
+        inside.fold(stations, f64::min)
     }
 
     /// Estimated error of the interpolation, N: the change at every second station when it is left out, over 2⁴, the order of the
@@ -135,17 +164,15 @@ impl ForceCurve {
         found
     }
 
-    /// First local maximum and first local minimum after it: displacement and force.
-    pub fn extrema(&self) -> Extrema {
+    /// Every local maximum and minimum inside, ascending.
+    pub fn turns(&self) -> Vec<Turn> {
         let knots = self.knots();
-        let inner = |falls_after: bool, after: f64| {
-            knots.windows(3).filter(|w| w[1] > after).find_map(|w| {
-                let (l, m, r) = (self.force(w[0]), self.force(w[1]), self.force(w[2]));
-                (if falls_after { m > l && m > r } else { m < l && m < r }).then_some((w[1], m))
-            })
+        let turn = |w: &[f64]| {
+            let (l, m, r) = (self.force(w[0]), self.force(w[1]), self.force(w[2]));
+            let is_max = m > l && m > r;
+            (is_max || (m < l && m < r)).then_some(Turn { at: w[1], is_max })
         };
-        let max = inner(true, -1.0);
-        Extrema { max, min: max.and_then(|(x, _)| inner(false, x)) }
+        knots.windows(3).filter_map(turn).collect()
     }
 
     /// The paper's c: the last displacement before the end at which the force rises through `fraction` of its end value.
@@ -300,10 +327,10 @@ mod tests {
 
     #[test]
     fn extrema_of_a_cubic() {
-        let Extrema { max, min } = cubic().extrema();
-        let ((xm, fm), (xn, f_n)) = (max.unwrap(), min.unwrap());
-        assert!((xm - 1.0).abs() < 1e-12 && (fm - 2.0).abs() < 1e-14);
-        assert!((xn - 2.0).abs() < 1e-12 && (f_n - 1.8).abs() < 1e-14);
+        let turns = cubic().turns();
+        let [max, min] = turns[..] else { panic!("{turns:?}") };
+        assert!(max.is_max && (max.at - 1.0).abs() < 1e-12 && (cubic().force(max.at) - 2.0).abs() < 1e-14);
+        assert!(!min.is_max && (min.at - 2.0).abs() < 1e-12 && (cubic().force(min.at) - 1.8).abs() < 1e-14);
     }
 
     #[test]

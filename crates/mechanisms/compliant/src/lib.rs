@@ -4,6 +4,7 @@
 //! ICRA 2010. Theory, corrections and limits of validity: `docs/theory/compliant.md`.
 
 mod analysis;
+mod bodies;
 mod checks;
 mod crossing;
 mod design;
@@ -20,16 +21,22 @@ mod scene;
 mod spec;
 mod statements;
 mod status;
+mod study;
 mod sway;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress, Reproduction};
+use forcewright_contract::studies::{Free, Studies};
 use forcewright_model::{Counter, Outcome, Status, StatusKind};
 
+use forcewright_study::evaluator::Evaluator;
+use forcewright_study::task::Task;
+
 pub use analysis::{Behaviour, LargestStress, Measured, Snap, measure};
+pub use bodies::{Body, DrawnNode};
 pub use crossing::{Crossing, first_crossing};
 pub use design::{Design, DisplayUnits, Envelope, Mirror, Requirements, StressLimit};
-pub use force_curve::{Extrema, ForceCurve, Interval};
+pub use force_curve::{Extrema, ForceCurve, Interval, Turn};
 pub use loads::Control;
 pub use material::Material;
 pub use metrics::{METRICS, MetricInfo};
@@ -56,7 +63,8 @@ impl Mechanism for Compliant {
             Ok(behaviour) => behaviour,
             Err(error) => return refused(design, error.to_string()),
         };
-        let measured = measure(design, &behaviour);
+        let trusted = behaviour.trusted(design);
+        let measured = measure(design, &trusted);
         let counters = behaviour.path.counters;
         let count = |name, count| Counter { name, count };
         let outcome = Outcome {
@@ -65,7 +73,7 @@ impl Mechanism for Compliant {
             status: status::status(design, &behaviour),
             error_estimate: behaviour.path.error_estimate.map(|e| e.max(behaviour.interpolation_error)),
             metrics: analysis::metrics(design, &measured),
-            checks: checks::checks(design, &behaviour, &measured),
+            checks: checks::checks(design, &trusted, &measured),
             curves: figures::curves(design, &behaviour),
             counters: vec![
                 count("stations", behaviour.path.points.len() as u64),
@@ -77,10 +85,22 @@ impl Mechanism for Compliant {
                 count("rejected_steps", counters.rejected_steps),
             ],
             sources: statements::sources(design),
-            warnings: statements::warnings(design, &behaviour, &measured),
+            warnings: statements::warnings(design, &trusted, &measured),
         };
         let figures = figures::figures(design, &behaviour, &measured);
         Analysis { outcome, figures, model: statements::model(design), limits: statements::limits(design) }
+    }
+
+    fn studies(spec: &Spec) -> &Studies {
+        &spec.studies
+    }
+
+    fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
+        study::evaluator(spec, design, free, diagnostics)
+    }
+
+    fn task(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task> {
+        study::task(spec, design, free, diagnostics)
     }
 
     fn explanations() -> &'static [Explanation] {

@@ -1,6 +1,6 @@
 //! Room: the smallest distance between beams, and of the beams to the sides of the envelope, over the travel.
 
-use forcewright_base::{maths, roots};
+use forcewright_base::roots;
 use forcewright_beam::{BeamState, Clearance, Point, Reflection, clearance, clearance_near};
 
 use crate::analysis::Behaviour;
@@ -10,6 +10,8 @@ use crate::design::{Design, Envelope, Mirror};
 const STATES: usize = 12;
 /// Places per beam at which its faces are looked at, before the least is refined between its neighbours.
 const PLACES: usize = 40;
+/// Distances below that part of half a thickness are none.
+const TOUCH: f64 = 1e-9;
 /// Width to which a displacement is refined, as part of the travel.
 const REFINED: f64 = 1e-4;
 
@@ -58,8 +60,8 @@ pub fn nearest(design: &Design, behaviour: &Behaviour) -> Option<Nearest> {
 
 /// The smallest distance of the beams, with their thickness, to the sides of an envelope from rest to the end of the path.
 ///
-/// Only the drawn network is looked at; its mirror image stays in the mirrored envelope. The end of a beam is cut square, so a beam that
-/// ends on a side at a right angle to it touches the side and does not stick out.
+/// Only the drawn network is looked at; its mirror image stays in the mirrored envelope. As for the clearance, a beam is all that is within
+/// half its thickness of its axis: its ends are round, and one that ends on a side sticks out by half its thickness.
 pub fn margin(behaviour: &Behaviour, envelope: &Envelope) -> Option<Margin> {
     let of = |point: &Point| {
         let all = point.beams.iter().enumerate().map(|(beam, state)| {
@@ -74,12 +76,12 @@ pub fn margin(behaviour: &Behaviour, envelope: &Envelope) -> Option<Margin> {
 /// Where a beam is nearest to the sides, and how near, m.
 fn beam_margin(state: &BeamState, envelope: &Envelope) -> (f64, f64) {
     let at = |u: f64| {
-        let ([x, y], (sin, cos)) = (state.shape_m(u), maths::sin_cos(state.angle_rad(u)));
+        let [x, y] = state.shape_m(u);
+        let sides = [x - envelope.low_m[0], envelope.high_m[0] - x, y - envelope.low_m[1], envelope.high_m[1] - y];
         let half_m = 0.5 * state.thickness_m(u);
-        let (aside, above) = (half_m * sin.abs(), half_m * cos.abs());
-        let sides =
-            [x - aside - envelope.low_m[0], envelope.high_m[0] - x - aside, y - above - envelope.low_m[1], envelope.high_m[1] - y - above];
-        sides.into_iter().fold(f64::INFINITY, f64::min)
+        let margin_m = sides.into_iter().fold(f64::INFINITY, f64::min) - half_m;
+        // A face on a side touches it, whatever rounding says.
+        if margin_m.abs() <= TOUCH * half_m { 0.0 } else { margin_m }
     };
     let place = |i: usize| i as f64 / PLACES as f64;
     let values: Vec<f64> = (0..=PLACES).map(|i| at(place(i))).collect();

@@ -3,20 +3,23 @@
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_beam::{Joints, Network, NetworkError, Rotation, Support};
 
+use crate::bodies::{DrawnNode, Grouping};
 use crate::design::Mirror;
 use crate::spec::Spec;
 
 /// What the engine finds wrong with the network, at the place of its cause.
-pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnostics: &mut Diagnostics) {
+pub(crate) fn check_network(network: &Network, grouping: &Grouping, spec: &Spec, place: Span, diagnostics: &mut Diagnostics) {
     // All loose nodes at once: the engine would name them one by one.
     let mut loose = false;
-    for (index, node) in spec.design.nodes.iter().enumerate() {
-        if !network.beams.iter().any(|b| b.start == index || b.end == index) {
+    for node in 0..network.nodes.len() {
+        if !network.beams.iter().any(|b| b.start == node || b.end == node) {
             loose = true;
-            diagnostics.push(
-                Diagnostic::error("E0510", node.name.span, format!("no beam ends at node `{}`", node.name.value))
-                    .help("remove it, or join it"),
-            );
+            // A body needs beams, not each of its nodes: one that none ends at may be loaded.
+            let body = grouping.body[node].and_then(|b| spec.design.bodies.get(b)).map(|b| &b.name);
+            let drawn = || spec.design.nodes.get(grouping.reference[node]).map(|n| &n.name);
+            let (what, name) = body.map_or_else(|| ("node", drawn()), |b| ("body", Some(b)));
+            let (name, span) = name.map_or(("?", place), |n| (n.value.as_str(), n.span));
+            diagnostics.push(Diagnostic::error("E0510", span, format!("no beam ends at {what} `{name}`")).help("remove it, or join it"));
         }
     }
     if loose {
@@ -24,8 +27,9 @@ pub(crate) fn check_network(network: &Network, spec: &Spec, place: Span, diagnos
     }
     let Err(error) = network.check() else { return };
     let beam_span = |beam: usize| spec.design.beams.get(beam).map_or(place, |b| b.name.span);
-    let node_span = |node: usize| spec.design.nodes.get(node).map_or(place, |n| n.name.span);
-    let node_name = |node: usize| spec.design.nodes.get(node).map_or("?", |n| n.name.value.as_str());
+    let drawn = |node: usize| grouping.reference.get(node).and_then(|d| spec.design.nodes.get(*d));
+    let node_span = |node: usize| drawn(node).map_or(place, |n| n.name.span);
+    let node_name = |node: usize| drawn(node).map_or("?", |n| n.name.value.as_str());
     let beam_name = |beam: usize| spec.design.beams.get(beam).map_or("?", |b| b.name.value.as_str());
     let diagnostic = match error {
         NetworkError::DoesNotClose { beam, gap_m } => Diagnostic::error(
@@ -116,15 +120,17 @@ pub(crate) fn check_joints(network: &Network, joints: Joints, spec: &Spec, place
     let Err(NetworkError::AllRigid { beam, rigid_m }) = network.check_joints(joints) else { return };
     let (span, name) = spec.design.beams.get(beam).map_or((place, "?"), |b| (b.name.span, b.name.value.as_str()));
     let length_m = network.beams.get(beam).map_or(f64::NAN, |b| b.shape.length_m());
+    let left_m = length_m - rigid_m;
+    let left = if left_m > 0.0 {
+        format!("only {:.3} mm is left to bend, less than a twentieth", 1e3 * left_m)
+    } else {
+        "nothing is left to bend".to_owned()
+    };
     diagnostics.push(
         Diagnostic::error(
             "E0512",
             span,
-            format!(
-                "beam `{name}` lies inside its joints over {:.3} mm of its {:.3} mm: nothing is left to bend",
-                1e3 * rigid_m,
-                1e3 * length_m
-            ),
+            format!("beam `{name}` lies inside its joints over {:.3} mm of its {:.3} mm: {left}", 1e3 * rigid_m, 1e3 * length_m),
         )
         .label("this beam")
         .help("lengthen or thin it, spread the beams that meet there, or let beams meet in points: `model.joints = \"point\"`"),
@@ -133,10 +139,11 @@ pub(crate) fn check_joints(network: &Network, joints: Joints, spec: &Spec, place
 
 /// On the mirror line, symmetry holds a node's rotation and its motion across; the network must say so, or one half alone would move
 /// otherwise than the two together. A beam on the line would be counted twice.
-pub(crate) fn check_mirror(network: &Network, mirror: Mirror, spec: &Spec, diagnostics: &mut Diagnostics) {
+pub(crate) fn check_mirror(network: &Network, nodes: &[DrawnNode], mirror: Mirror, spec: &Spec, diagnostics: &mut Diagnostics) {
     let off = |point: [f64; 2]| !mirror.holds(network, point);
-    for (node, drawn) in network.nodes.iter().zip(&spec.design.nodes) {
-        let guided = match node.support {
+    let mut reported = Vec::new();
+    for (node, drawn) in nodes.iter().zip(&spec.design.nodes) {
+        let guided = match network.nodes[node.node].support {
             Support::Clamped => true,
             Support::Slider { direction, rotation: Rotation::Fixed } => match mirror {
                 Mirror::X(_) => direction[0].abs() < 1e-9,
@@ -144,7 +151,9 @@ pub(crate) fn check_mirror(network: &Network, mirror: Mirror, spec: &Spec, diagn
             },
             _ => false,
         };
-        if !off(node.position_m) && !guided {
+        // Of a body, one of its nodes on the line says it for all.
+        if !off(node.position_m) && !guided && !reported.contains(&node.node) {
+            reported.push(node.node);
             let along = if matches!(mirror, Mirror::X(_)) { "[0, 1]" } else { "[1, 0]" };
             diagnostics.push(
                 Diagnostic::error(
@@ -158,7 +167,7 @@ pub(crate) fn check_mirror(network: &Network, mirror: Mirror, spec: &Spec, diagn
         }
     }
     for (beam, drawn) in network.beams.iter().zip(&spec.design.beams) {
-        let start = network.nodes[beam.start].position_m;
+        let start = [0, 1].map(|i| network.nodes[beam.start].position_m[i] + beam.arms_m[0][i]);
         let on_line = (0..=4).all(|i| {
             let [x, y] = beam.shape.point_m(f64::from(i) / 4.0);
             !off([start[0] + x, start[1] + y])

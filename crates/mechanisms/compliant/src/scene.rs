@@ -2,7 +2,7 @@
 
 use forcewright_base::maths;
 use forcewright_base::units::format_si;
-use forcewright_beam::{Beam, BeamState, Point, Rotation, Support};
+use forcewright_beam::{Beam, BeamState, Drive, Point, Rotation, Support};
 use forcewright_model::{ColourScale, Item, Role, Scene, SupportKind};
 
 use crate::analysis::{Behaviour, Measured};
@@ -19,14 +19,17 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured)
     artist.mirror_line(&mut items);
     artist.envelope(&mut items);
     artist.beams(&mut items, None);
+    artist.bodies(&mut items, None);
     if let Some(point) = last {
         artist.block(&mut items, point);
         artist.beams(&mut items, Some(point));
+        artist.bodies(&mut items, Some(point));
     }
     artist.supports(&mut items);
     artist.labels(&mut items);
     if let Some(point) = last {
         artist.load(&mut items, behaviour, point);
+        artist.held_loads(&mut items, point);
         artist.peak(&mut items, measured, point);
         artist.nearest(&mut items, measured, point);
     }
@@ -42,11 +45,17 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured)
             max: scale_end,
             limit,
         }),
+        words: ["as made", "under load"],
         display: design.units.length.clone(),
         description: format!(
-            "The mechanism as made (outline) and at Δ = {reached} (coloured by stress): {} beams and {} nodes{}.",
+            "The mechanism as made (outline) and at Δ = {reached} (coloured by stress): {} beams and {} nodes{}{}.",
             design.network.beams.len(),
-            design.network.nodes.len(),
+            design.drawn.len(),
+            match design.bodies.len() {
+                0 => String::new(),
+                1 => ", a rigid body".to_owned(),
+                n => format!(", {n} rigid bodies"),
+            },
             if design.mirror.is_some() { ", with its mirrored half" } else { "" }
         ),
     }
@@ -57,13 +66,19 @@ fn size_m(design: &Design) -> f64 {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
     for beam in &design.network.beams {
-        let start = design.network.nodes[beam.start].position_m;
+        let start = design.start_m(beam);
         for i in 0..=8 {
             let p = beam.shape.point_m(f64::from(i) / 8.0);
             for k in 0..2 {
                 low[k] = low[k].min(start[k] + p[k]);
                 high[k] = high[k].max(start[k] + p[k]);
             }
+        }
+    }
+    for node in &design.drawn {
+        for k in 0..2 {
+            low[k] = low[k].min(node.position_m[k]);
+            high[k] = high[k].max(node.position_m[k]);
         }
     }
     (high[0] - low[0]).max(high[1] - low[1])
@@ -125,6 +140,37 @@ fn axis_point(state: Option<&BeamState>, beam: &Beam, start: [f64; 2], u: f64) -
     )
 }
 
+/// The corners of a band of a half width around points: of the square ends of a bar around two, of a polygon around more.
+///
+/// Each point is widened to a small square; the hull of all (A. M. Andrew, Information Processing Letters 9 (1979)) is the outline.
+fn outline(points: Vec<[f64; 2]>, half_m: f64) -> Vec<[f64; 2]> {
+    let turns = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    // Squares along the line through the two points that are farthest apart, so that a bar is a rectangle.
+    let pairs = points.iter().enumerate().flat_map(|(i, p)| points.iter().skip(i + 1).map(move |q| [q[0] - p[0], q[1] - p[1]]));
+    let longest = pairs.reduce(|a, b| if maths::hypot(b[0], b[1]) > maths::hypot(a[0], a[1]) { b } else { a }).unwrap_or([1.0, 0.0]);
+    let length = maths::hypot(longest[0], longest[1]);
+    let [x, y] = if length > 0.0 { longest.map(|v| half_m * v / length) } else { [half_m, 0.0] };
+    let around = |p: [f64; 2]| [[x - y, y + x], [-x - y, x - y], [y - x, -x - y], [x + y, y - x]].map(|c| [p[0] + c[0], p[1] + c[1]]);
+    let mut all: Vec<[f64; 2]> = points.into_iter().flat_map(around).collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+        let mut chain: Vec<[f64; 2]> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..]
+                && turns(a, b, p) <= 1e-12 * half_m * half_m
+            {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = half(&mut all.iter().copied());
+    hull.extend(half(&mut all.iter().rev().copied()));
+    hull
+}
+
 struct Artist<'a> {
     design: &'a Design,
     size_m: f64,
@@ -133,11 +179,12 @@ struct Artist<'a> {
 impl Artist<'_> {
     fn beams(&self, items: &mut Vec<Item>, state: Option<&Point>) {
         for (index, beam) in self.design.network.beams.iter().enumerate() {
-            let start = self.design.network.nodes[beam.start].position_m;
+            let start = self.design.start_m(beam);
             let state = state.map(|s| &s.beams[index]);
             let (role, copy) =
                 if state.is_some() { (Role::Deformed, Role::DeformedCopy) } else { (Role::Undeformed, Role::UndeformedCopy) };
             for piece in pieces(beam, state) {
+                let (role, copy) = if piece.rigid { (Role::Rigid, Role::RigidCopy) } else { (role, copy) };
                 let at = |i: usize| axis_point(state, beam, start, piece.place(i));
                 let line: Vec<[f64; 2]> = (0..=piece.chords).map(at).collect();
                 let values = state.filter(|_| !piece.rigid).map(|state| {
@@ -240,8 +287,8 @@ impl Artist<'_> {
     }
 
     fn labels(&self, items: &mut Vec<Item>) {
-        for (node, name) in self.design.network.nodes.iter().zip(&self.design.node_names) {
-            items.push(Item::Label { at: node.position_m, text: name.clone() });
+        for node in &self.design.drawn {
+            items.push(Item::Label { at: node.position_m, text: node.name.clone() });
         }
     }
 
@@ -269,13 +316,51 @@ impl Artist<'_> {
         items.push(Item::Arrow { from: tail, to: head, label });
     }
 
+    /// Rigid bodies: the hull of their nodes, as wide as their thickest beam.
+    fn bodies(&self, items: &mut Vec<Item>, state: Option<&Point>) {
+        let (role, copy) = if state.is_some() { (Role::Deformed, Role::DeformedCopy) } else { (Role::Undeformed, Role::UndeformedCopy) };
+        for body in &self.design.bodies {
+            let at = |n: &usize| self.design.drawn.get(*n).map(|d| state.map_or(d.position_m, |point| self.design.moved_m(d, point)));
+            let beams = self.design.network.beams.iter();
+            let ends = beams.flat_map(|b| [(b.start, b.thickness_at(0.0)), (b.end, b.thickness_at(1.0))]);
+            let thickest_m = ends.filter(|(node, _)| *node == body.node).map(|(_, w)| w).fold(0.01 * self.size_m, f64::max);
+            let corners = outline(body.members.iter().filter_map(at).collect(), 0.5 * thickest_m);
+            if let Some(mirror) = self.design.mirror {
+                items.push(Item::Body { corners: corners.iter().map(|p| mirror.image(*p)).collect(), role: copy });
+            }
+            items.push(Item::Body { corners, role });
+        }
+    }
+
+    /// What earlier loads hold: an arrow for a force or a travel, words for what turns.
+    fn held_loads(&self, items: &mut Vec<Item>, point: &Point) {
+        let design = self.design;
+        for (stage, drawn) in design.network.before.iter().zip(&design.loaded) {
+            let Some(drawn) = design.drawn.get(*drawn) else { continue };
+            let at = design.moved_m(drawn, point);
+            let text = format!("held: {}", crate::statements::amount(design, &stage.drive, stage.to));
+            let (Drive::Displacement { direction: d, .. } | Drive::Force { direction: d, .. }) = stage.drive else {
+                items.push(Item::Label { at, text });
+                continue;
+            };
+            // Beside the arrow of the last load, which may come the same way.
+            let aside = if drawn.node == design.load_node { 0.05 * self.size_m } else { 0.0 };
+            let end = |back: f64| [at[0] - back * d[0] - aside * d[1], at[1] - back * d[1] + aside * d[0]];
+            let (head, tail) = (end(0.02 * self.size_m), end(0.16 * self.size_m));
+            if let Some(mirror) = design.mirror {
+                items.push(Item::Arrow { from: mirror.image(tail), to: mirror.image(head), label: String::new() });
+            }
+            items.push(Item::Arrow { from: tail, to: head, label: text });
+        }
+    }
+
     fn envelope(&self, items: &mut Vec<Item>) {
         let Some(envelope) = self.design.requirements.as_ref().and_then(|r| r.envelope) else { return };
         let ([left, bottom], [right, top]) = (envelope.low_m, envelope.high_m);
         // An open side has no corner to draw.
         if [left, bottom, right, top].iter().all(|v| v.is_finite()) {
             let points = vec![[left, bottom], [right, bottom], [right, top], [left, top], [left, bottom]];
-            items.push(Item::Line { points, width_m: 0.0, role: Role::Construction, values: None });
+            items.push(Item::Line { points, width_m: 0.0, role: Role::Envelope, values: None });
         }
     }
 

@@ -4,6 +4,7 @@ use forcewright_base::units::{Dimension, Quantity};
 use forcewright_beam::{Network, Shape};
 use forcewright_contract::describe::{Along, Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
+use forcewright_contract::studies::Studies;
 
 use crate::metrics::METRICS;
 
@@ -26,6 +27,8 @@ pub struct Spec {
     pub(crate) load: Vec<Member<Load>>,
     /// `[model]`
     pub(crate) model: Section<Model>,
+    /// `[optimise]` and `[tolerance]`
+    pub(crate) studies: Studies,
 }
 
 /// What the mechanism must do.
@@ -118,6 +121,7 @@ pub(crate) struct Design {
     pub thickness: Slot<Quantity>,
     pub depth: Slot<Quantity>,
     pub nodes: Vec<Member<Node>>,
+    pub bodies: Vec<Member<Body>>,
     pub beams: Vec<Member<Beam>>,
 }
 
@@ -125,6 +129,26 @@ pub(crate) struct Design {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Node {
     pub at: Slot<[Quantity; 2]>,
+    pub held: Held,
+    pub on: Section<On>,
+}
+
+/// Where an optimiser may move a node.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct On {
+    pub line: Slot<Vec<Located<[Quantity; 2]>>>,
+}
+
+/// A rigid body that joins nodes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Body {
+    pub nodes: Slot<Vec<Located<String>>>,
+    pub held: Held,
+}
+
+/// How the ground holds a node or a body.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Held {
     pub support: Slot<&'static str>,
     pub direction: Slot<[f64; 2]>,
     pub rotation: Slot<&'static str>,
@@ -202,13 +226,13 @@ pub(crate) const METHODS: &[Word] = &[
 const LARGEST_M: f64 = 10.0;
 /// A hundredth of a micrometre: below it no beam is made and no travel is meant.
 const SMALLEST_M: f64 = 1e-8;
+/// Of one body.
+const MOST_NODES: usize = 64;
 /// A nanonewton.
 const SMALLEST_N: f64 = 1e-9;
 
 const STUDY: &str = "it belongs to a study that this version does not have; `solve` does not need it";
 const RESERVED_SECTIONS: &[Reserved] = &[
-    Reserved { key: "optimise", instead: STUDY, ignored: true },
-    Reserved { key: "tolerance", instead: STUDY, ignored: true },
     Reserved { key: "measurements", instead: STUDY, ignored: true },
     Reserved { key: "calibrate", instead: STUDY, ignored: true },
     Reserved { key: "scenario", instead: "scenarios are not available yet; `solve` gives the force over the displacement", ignored: true },
@@ -219,11 +243,6 @@ const RESERVED_SECTIONS: &[Reserved] = &[
     },
     Reserved { key: "errors", instead: "errors of making are not available yet; change the parameter itself", ignored: false },
 ];
-const RESERVED_NODE: &[Reserved] = &[Reserved {
-    key: "on",
-    instead: "it restricts an optimiser, which this version does not have; `solve` does not need it",
-    ignored: true,
-}];
 const RESERVED_LAYOUT: &[Reserved] = &[
     Reserved { key: "array", instead: "draw every copy, or use `mirror`", ignored: false },
     Reserved { key: "circular", instead: "draw every copy, or use `mirror`", ignored: false },
@@ -248,6 +267,7 @@ impl Describe for Spec {
             &mut self.load,
         );
         self.model.describe(v, &Param::new("model", "Which equations are solved, and how well."));
+        self.studies.describe(v);
         v.reserved(RESERVED_SECTIONS);
     }
 }
@@ -367,6 +387,11 @@ impl Describe for Design {
             &mut self.depth,
         );
         v.members(&Param::new("nodes", "Where beams meet and where the ground holds them.").required(), Form::Table, &mut self.nodes);
+        v.members(
+            &Param::new("bodies", "Rigid bodies: several nodes that move and turn as one, joined by something stiff."),
+            Form::Table,
+            &mut self.bodies,
+        );
         v.members(&Param::new("beams", "Flexible beams.").required(), Form::List, &mut self.beams);
     }
 }
@@ -375,10 +400,33 @@ impl Describe for Node {
     fn describe(&mut self, v: &mut dyn Visitor) {
         let coordinate = Param::new("at", "Position [x, y]; may be left out where beams given by `angle` and `length` lead there.");
         v.point(&coordinate.of(Dimension::Length).within(-LARGEST_M, LARGEST_M), &mut self.at);
-        v.choice(&Param::new("support", "How the ground holds it; without it the node is free."), SUPPORTS, &mut self.support);
+        self.held.describe(v, "How the ground holds it; without it the node is free.");
+        self.on.describe(v, &Param::new("on", "Where an optimiser may move it; without it anywhere in its range."));
+    }
+}
+
+impl Describe for Body {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.names(&Param::new("nodes", "The nodes that it joins, at least two.").required(), 2, MOST_NODES, &mut self.nodes);
+        self.held.describe(
+            v,
+            "How the ground holds all of it, if that keeps its angle; what lets it turn (pinned, a slider that turns) stands at one of its nodes.",
+        );
+    }
+}
+
+impl Held {
+    fn describe(&mut self, v: &mut dyn Visitor, support: &'static str) {
+        v.choice(&Param::new("support", support), SUPPORTS, &mut self.support);
         v.direction(&Param::new("direction", "Direction in which a slider moves."), &mut self.direction);
         v.choice(&Param::new("rotation", "Whether a slider may turn; fixed by default."), ROTATIONS, &mut self.rotation);
-        v.reserved(RESERVED_NODE);
+    }
+}
+
+impl Describe for On {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let line = Param::new("line", "The two ends of a straight line that it stays on, `[[x, y], [x, y]]`.");
+        v.points(&line.of(Dimension::Length).within(-LARGEST_M, LARGEST_M).required(), 2, &mut self.line);
     }
 }
 

@@ -5,6 +5,7 @@ use forcewright_beam::{Beam, Drive, Joints, Theory};
 use forcewright_model::{Citation, Statement, Warning};
 
 use crate::analysis::{Behaviour, Measured};
+use crate::bodies::Body;
 use crate::crossing::first_crossing;
 use crate::design::Design;
 use crate::loads::Control;
@@ -37,7 +38,7 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
     };
     vec![
         beams,
-        statement("Network", format!("{} {halves}", joints(design))),
+        statement("Network", format!("{} {}{halves}", joints(design), bodies(design))),
         statement("Loads", loads(design)),
         statement(
             "Solution",
@@ -61,30 +62,33 @@ fn joints(design: &Design) -> &'static str {
     }
 }
 
+/// How far a load goes on the whole layout: `2 N`, `5 mm`, `3°`.
+pub(crate) fn amount(design: &Design, drive: &Drive, to: f64) -> String {
+    let (copies, units) = (design.copies(), &design.units);
+    let named = |symbol: &str, dimension| Unit::parse(symbol).unwrap_or_else(|_| Unit::si(dimension));
+    match drive {
+        Drive::Displacement { .. } => format_si(to, &units.displacement, 4),
+        Drive::Force { .. } => format_si(copies * to, &units.force, 4),
+        Drive::Rotation { .. } => format_si(to, &named("deg", Dimension::Angle), 4),
+        Drive::Moment { .. } => format_si(copies * to, &named("N*mm", Dimension::Torque), 4),
+    }
+}
+
 /// What happens, in order.
 fn loads(design: &Design) -> String {
-    let copies = design.copies();
-    let units = &design.units;
-    let name = |node: usize| design.node_names.get(node).map_or("?", String::as_str);
     let toward = |d: [f64; 2]| format!("[{}, {}]", format_number(d[0], 4), format_number(d[1], 4));
-    let one = |drive: &Drive, to: f64| match *drive {
-        Drive::Displacement { node, direction } => {
-            format!("node {} is moved by {} along {}", name(node), format_si(to, &units.displacement, 4), toward(direction))
-        }
-        Drive::Force { node, direction } => {
-            format!("node {} is loaded by {} along {}", name(node), format_si(copies * to, &units.force, 4), toward(direction))
-        }
-        Drive::Rotation { node } => {
-            let degree = Unit::parse("deg").unwrap_or_else(|_| Unit::si(Dimension::Angle));
-            format!("node {} is turned by {}", name(node), format_si(to, &degree, 4))
-        }
-        Drive::Moment { node } => {
-            let unit = Unit::parse("N*mm").unwrap_or_else(|_| Unit::si(Dimension::Torque));
-            format!("node {} is loaded by a moment of {}", name(node), format_si(copies * to, &unit, 4))
+    let one = |index: usize, drive: &Drive, to: f64| {
+        let name = design.loaded.get(index).and_then(|d| design.drawn.get(*d)).map_or("?", |d| d.name.as_str());
+        let amount = amount(design, drive, to);
+        match *drive {
+            Drive::Displacement { direction, .. } => format!("node {name} is moved by {amount} along {}", toward(direction)),
+            Drive::Force { direction, .. } => format!("node {name} is loaded by {amount} along {}", toward(direction)),
+            Drive::Rotation { .. } => format!("node {name} is turned by {amount}"),
+            Drive::Moment { .. } => format!("node {name} is loaded by a moment of {amount}"),
         }
     };
-    let last = one(&design.network.drive, design.load_end);
-    let before: Vec<String> = design.network.before.iter().map(|s| one(&s.drive, s.to)).collect();
+    let before: Vec<String> = design.network.before.iter().enumerate().map(|(i, s)| one(i, &s.drive, s.to)).collect();
+    let last = one(before.len(), &design.network.drive, design.load_end);
     match before.len() {
         0 => format!("From rest {last}."),
         1 => format!("After 1 load stage, held at its end ({}), {last}. Curves and metrics are those of this last load.", before.join("")),
@@ -93,6 +97,15 @@ fn loads(design: &Design) -> String {
             before.join("; ")
         ),
     }
+}
+
+/// The rigid bodies, in words.
+fn bodies(design: &Design) -> String {
+    let name = |n: &usize| design.drawn.get(*n).map_or("?", |d| d.name.as_str());
+    let one = |body: &Body| {
+        format!("Nodes {} are one rigid body, `{}`. ", body.members.iter().map(name).collect::<Vec<_>>().join(", "), body.name)
+    };
+    design.bodies.iter().map(one).collect()
 }
 
 /// Where the data of each material come from.

@@ -25,7 +25,7 @@ fn deformed(text: &str, set: &[&str]) -> [Vec<(Vec<[f64; 2]>, f64)>; 2] {
     let Some(FigureContent::Scene(scene)) = figures.into_iter().next().map(|f| f.content) else { panic!("no picture") };
     let mut found = [Vec::new(), Vec::new()];
     for item in scene.items {
-        if let Item::Line { points, width_m, role: Role::Deformed, values } = item {
+        if let Item::Line { points, width_m, role: Role::Deformed | Role::Rigid, values } = item {
             found[usize::from(values.is_none())].push((points, width_m));
         }
     }
@@ -50,6 +50,27 @@ fn rigid_joints_stiffen_the_prototype() {
     }
     assert_eq!(codes(SHAPES, &["design.thickness=16 mm", "model.joints=overlap"]), ["E0512"]);
     assert!(codes(SHAPES, &["design.thickness=16 mm"]).is_empty());
+    // What is said to be left is what is left.
+    let messages: Vec<String> = (40..160)
+        .flat_map(|quarter| {
+            let thickness = format!("design.thickness={} mm", 0.25 * f64::from(quarter));
+            let (_, found) = understand(SHAPES, &[&thickness, "model.joints=overlap"]);
+            found.in_file_order().iter().filter(|d| d.code == "E0512").map(|d| d.message.clone()).collect::<Vec<_>>()
+        })
+        .collect();
+    let mut some_left = 0;
+    for message in &messages {
+        let numbers: Vec<f64> = message.split(" mm").filter_map(|part| part.rsplit(' ').next()?.parse().ok()).collect();
+        let left = numbers[1] - numbers[0];
+        match numbers.get(2) {
+            Some(said) => {
+                close(*said, left, 1.1e-3, message);
+                some_left += 1;
+            }
+            None => assert!(left <= 1.1e-3 && message.ends_with("nothing is left to bend"), "{message}"),
+        }
+    }
+    assert!(some_left > 0 && some_left < messages.len(), "{messages:?}");
 }
 
 /// A cantilever along x whose thickness falls from the clamp to the tip.

@@ -1,8 +1,11 @@
 //! Requirements: where they flip, what they say, and whether their advice helps.
 
 mod common;
+#[path = "common/drawing.rs"]
+mod drawing;
 
 use common::{NODES, check, close, near, outcome, solve, understand};
+use drawing::{Drawing, guide};
 use forcewright_compliant::METRICS;
 use forcewright_model::{Check, CheckState, Outcome, Sense};
 
@@ -221,4 +224,87 @@ fn a_miss_on_the_computed_part_is_a_miss_of_the_whole() {
     assert_eq!(check(&early, "COMP002").state, CheckState::Missed);
     assert_eq!(check(&early, "COMP001").state, CheckState::NotAssessed);
     assert!(check(&early, "COMP002").title.contains("on the computed part"));
+}
+
+#[test]
+fn a_limit_that_nothing_meets_is_refused() {
+    let errors = |set: &[&str]| {
+        understand(NODES, set).1.in_file_order().iter().map(|d| (d.code, d.help.clone().unwrap_or_default())).collect::<Vec<_>>()
+    };
+    for set in [
+        &["requirements.limits.mass.min=2 g", "requirements.limits.mass.max=1 g"][..],
+        &["requirements.stiffness.min=1 N/mm", "requirements.stiffness.max=0.5 N/mm"],
+    ] {
+        let found = errors(set);
+        assert!(matches!(&found[..], [("E0204", help)] if help.contains("exchange")), "{found:?}");
+    }
+    // The least value is 0 unless it is given.
+    let without = NODES.replace("stiffness = { min = \"-0.05 N/mm\" }", "stiffness = { max = \"-0.01 N/mm\" }");
+    assert!(without != NODES);
+    let found = understand(&without, &[]).1;
+    let all: Vec<_> = found.in_file_order().iter().map(|d| (d.code, d.help.clone().unwrap_or_default())).collect();
+    assert!(matches!(&all[..], [("E0204", help)] if help.contains("`stiffness.min`")), "{all:?}");
+    assert!(errors(&["requirements.limits.mass.min=1 g", "requirements.limits.mass.max=1 g"]).is_empty());
+}
+
+/// Two leaning columns whose joined heads are pushed down: guided they stand, free they sway.
+#[test]
+fn a_limit_on_sideways_stiffness_agrees_with_the_warning() {
+    let half = |foot: [f64; 2], head: [f64; 2], travel: &str| Drawing {
+        nodes: vec![("n1", foot, "support = \"clamped\"".to_owned()), ("n2", head, guide([0.0, 1.0]))],
+        beams: vec![("b1", ["n1", "n2"], if head[0] > 0.0 { Vec::new() } else { vec![0.5, -0.2] })],
+        load_node: "n2",
+        load_direction: [0.0, -1.0],
+        travel: travel.to_owned(),
+        mirror: Some("x = 0".to_owned()),
+        model: "reissner",
+    };
+    let columns = |travel: &str| half([12.0, 0.0], [0.0, 60.0], travel);
+    // A snapping beam to each side of a wide block: one may snap back while the other goes on, and the block turns over.
+    let snapping = half([100.0, 0.0], [50.0, 3.0], "4 mm");
+    let asked = |drawing: &Drawing, limit: &str| {
+        let limits = format!("[requirements.limits]\nlateral_stiffness_min = {{ {limit} }}\n[requirements.stress]");
+        let result = outcome(&drawing.text().replace("[requirements.stress]", &limits), &[]);
+        (result.warnings.iter().any(|w| w.code == "W0510"), check(&result, "COMP006").clone())
+    };
+    let (sways, found) = asked(&columns("0.1 mm"), "min = \"0 N/mm\"");
+    assert!(!sways && found.state == CheckState::Met && found.value.is_some(), "{found:?}");
+    let mut without_value = 0;
+    for drawing in [columns("6 mm"), columns("15 mm"), snapping] {
+        let travel = &drawing.travel;
+        let (sways, found) = asked(&drawing, "min = \"0 N/mm\"");
+        assert!(sways && found.state == CheckState::Missed, "{travel}: {found:?}");
+        assert!(found.advice.as_ref().is_some_and(|a| a.contains("W0510")) && found.value.is_none_or(|k| k < 0.0), "{found:?}");
+        // Where it turns over there is no least stiffness: however low the limit, it is missed.
+        let (_, lower) = asked(&drawing, "min = \"-1e6 N/mm\"");
+        assert_eq!(lower.state == CheckState::Missed, found.value.is_none(), "{travel}: {lower:?}");
+        without_value += usize::from(found.value.is_none());
+    }
+    assert!(without_value > 0);
+}
+
+/// Where a beam is pulled straight the force soars; a curve through stations overshoots there, and no device jumps.
+#[test]
+fn a_force_that_soars_is_no_jump() {
+    let mut overshot = 0;
+    for bend in [0.8, 1.2, 1.57, 2.0, 2.4] {
+        let drawing = Drawing {
+            nodes: vec![("n1", [0.0, 0.0], "support = \"clamped\"".to_owned()), ("n2", [40.0, 0.0], guide([1.0, 0.0]))],
+            beams: vec![("b1", ["n1", "n2"], vec![bend])],
+            load_node: "n2",
+            load_direction: [1.0, 0.0],
+            travel: "20 mm".to_owned(),
+            mirror: None,
+            model: "inextensible",
+        };
+        let solved = solve(&drawing.text(), &[]);
+        let points = &solved.behaviour.path.points;
+        assert!(points.windows(2).all(|p| p[0].force < p[1].force && p[1].stiffness > 0.0), "the force grows throughout");
+        overshot += usize::from(!solved.behaviour.curve.as_ref().unwrap().turns().is_empty());
+        assert!(solved.behaviour.extrema().max.is_none() && solved.behaviour.jump().is_none());
+        let result = outcome(&drawing.text(), &[]);
+        assert!(result.status.message.contains("pulled straight"), "{:?}", result.status);
+        assert!(!result.warnings.iter().any(|w| w.code == "W0503"), "{:?}", result.warnings);
+    }
+    assert!(overshot > 0, "the curve itself never overshoots");
 }

@@ -71,16 +71,33 @@ fn boxed(envelope: &str, travel: &str) -> String {
 fn distance_to_each_side() {
     let margin = |envelope: &str, travel: &str| solve(&boxed(envelope, travel), &[]).get("envelope_margin");
     close(margin("y = [\"-20 mm\", \"3 mm\"]", "1 mm"), 2.5e-3, 1e-12, "above, at rest, less half the thickness");
-    close(margin("x = [\"-7 mm\", \"200 mm\"]", "1 mm"), 7e-3, 1e-12, "behind the clamp, where the end is square");
-    close(margin("x = [\"0 mm\", \"200 mm\"]\ny = [\"-30 mm\", \"30 mm\"]", "1 mm"), 0.0, 1e-12, "clamped to the wall");
-    // The upper corner of the tip turns outwards a little before the tip comes back.
-    close(margin("x = [\"-7 mm\", \"99 mm\"]", "1 mm"), -1.0023e-3, 1e-7, "too long");
-    // The lower corner of the tip when pushed down.
+    close(margin("x = [\"-7 mm\", \"200 mm\"]", "1 mm"), 6.5e-3, 1e-12, "behind the clamp, where the end is round");
+    close(margin("x = [\"0 mm\", \"200 mm\"]\ny = [\"-30 mm\", \"30 mm\"]", "1 mm"), -0.5e-3, 1e-12, "clamped to the wall");
+    close(margin("x = [\"-7 mm\", \"99 mm\"]", "1 mm"), -1.5e-3, 1e-9, "too long, at rest: it comes back when pushed");
+    // The tip when pushed down.
     let solved = solve(&boxed("y = [\"-12 mm\", \"9 mm\"]", "10 mm"), &[]);
     let tip = &solved.behaviour.path.points.last().unwrap().beams[0];
-    let corner = tip.shape_m(1.0)[1] - 0.5e-3 * forcewright_base::maths::cos(tip.angle_rad(1.0));
-    close(solved.get("envelope_margin"), corner + 12e-3, 1e-10, "below, pushed");
+    close(solved.get("envelope_margin"), 12e-3 - 10e-3 - 0.5e-3, 1e-9, "below, pushed");
     close(tip.shape_m(1.0)[1], -10e-3, 1e-9, "the tip");
+}
+
+/// A wall that is a beam, and a wall that is a side of the envelope, at the same place: the same distance, to all sides of an end.
+#[test]
+fn clearance_and_envelope_follow_one_rule() {
+    for (tip, wall, side) in [
+        ([40.0, 0.0], [[45.0, -30.0], [45.0, 30.0]], "x = [\"-20 mm\", \"45 mm\"]"),
+        ([28.0, 28.0], [[34.0, -30.0], [34.0, 60.0]], "x = [\"-20 mm\", \"34 mm\"]"),
+        ([5.0, 30.0], [[-30.0, 33.0], [30.0, 33.0]], "y = [\"-20 mm\", \"33 mm\"]"),
+    ] {
+        let mut drawing = Drawing::straight("", [1.0, -1.0], "0.01 mm", "reissner");
+        drawing.nodes[1].1 = tip;
+        let alone = drawing.text().replace("[material]", &format!("[requirements.envelope]\n{side}\n[material]"));
+        drawing.nodes.extend([("w1", wall[0], "support = \"clamped\"".to_owned()), ("w2", wall[1], "support = \"clamped\"".to_owned())]);
+        drawing.beams.push(("wall", ["w1", "w2"], Vec::new()));
+        // The wall has a thickness of its own, the side has none.
+        let clearance = solve(&drawing.text(), &[]).get("clearance_min") + 0.5e-3;
+        close(solve(&alone, &[]).get("envelope_margin"), clearance, 2e-6, side);
+    }
 }
 
 #[test]
@@ -99,7 +116,7 @@ fn the_check_and_the_picture() {
         FigureContent::Scene(scene) => scene
             .items
             .iter()
-            .any(|i| matches!(i, Item::Line { points, role: Role::Construction, .. } if points.len() == 5 && (points[2][0] - 0.2).abs() + (points[2][1] - 9e-3).abs() < 1e-12)),
+            .any(|i| matches!(i, Item::Line { points, role: Role::Envelope, .. } if points.len() == 5 && (points[2][0] - 0.2).abs() + (points[2][1] - 9e-3).abs() < 1e-12)),
         FigureContent::Plot(_) => false,
     });
     assert!(drawn, "the envelope is in the picture");

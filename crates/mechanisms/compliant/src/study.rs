@@ -1,0 +1,56 @@
+//! The family seen by studies.
+
+mod knobs;
+mod line;
+mod scatter;
+mod search;
+mod task;
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
+use forcewright_beam::Drive;
+use forcewright_contract::studies::Free;
+use forcewright_study::evaluator::Evaluator;
+use forcewright_study::task::Task;
+
+use crate::design::Design;
+use crate::spec::Spec;
+use knobs::Knobs;
+use scatter::Scatter;
+
+/// The design as studies that look at many see it.
+pub(crate) fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
+    check_drive(spec, design, diagnostics)?;
+    let knobs = Knobs::new(spec, design, free, false, diagnostics)?;
+    let place = spec.studies.tolerance.present.as_ref().map(|p| p.span).unwrap_or_default();
+    say_what_is_left(&scatter::not_measured(design), "is not looked at by this study", place, diagnostics);
+    Some(Box::new(Scatter::new(design, knobs)))
+}
+
+/// The search that `[optimise]` asks for.
+pub(crate) fn task(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task> {
+    check_drive(spec, design, diagnostics)?;
+    let knobs = Knobs::new(spec, design, free, true, diagnostics)?;
+    let place = spec.studies.optimise.present.as_ref().map(|p| p.span).unwrap_or_default();
+    say_what_is_left(&task::not_kept(design), "is not seen by the search; it is checked at the end", place, diagnostics);
+    task::task(design, knobs, &spec.studies.optimise.objective, diagnostics)
+}
+
+/// Studies look at forces over a prescribed displacement from rest.
+fn check_drive(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<()> {
+    if matches!(design.network.drive, Drive::Displacement { .. }) && design.network.before.is_empty() {
+        return Some(());
+    }
+    let span = spec.load.last().map(|l| l.name.span).unwrap_or_default();
+    diagnostics.push(
+        Diagnostic::error("E0316", span, "studies need one load that prescribes a displacement")
+            .label("this load")
+            .help("give `travel` instead of `force`, `moment` or `rotation`, and no load before it"),
+    );
+    None
+}
+
+fn say_what_is_left(names: &[&str], what: &str, place: forcewright_base::diagnostics::Span, diagnostics: &mut Diagnostics) {
+    for name in names {
+        diagnostics.push(Diagnostic::warning("W0511", place, format!("`{name}` {what}")).label("of the requirements"));
+    }
+}

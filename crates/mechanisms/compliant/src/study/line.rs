@@ -1,0 +1,218 @@
+//! The axis of a beam at a state, and where it comes near to a wall or to another beam.
+
+use std::ops::Range;
+
+use forcewright_beam::Network;
+
+/// Beams that meet are kept apart only beyond this part of their lengths from the node that they share.
+const NEAR_JOINT: f64 = 0.125;
+/// Steps of Newton's method from the nearest samples.
+const STEPS: usize = 4;
+
+/// Places that a side of the polygons spans with which a search begins.
+const STRIDE: usize = 2;
+
+/// An axis: positions and their derivatives by u at even places; between them a cubic. Lengths in m.
+pub(super) struct Line(Vec<[[f64; 2]; 2]>);
+
+/// A point of a line with two derivatives by u.
+struct Local {
+    at: [f64; 2],
+    by: [f64; 2],
+    bend: [f64; 2],
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+impl Line {
+    /// A line through at least two places.
+    pub(super) fn new(places: Vec<[[f64; 2]; 2]>) -> Self {
+        Self(places)
+    }
+
+    fn cells(&self) -> usize {
+        self.0.len() - 1
+    }
+
+    fn local(&self, u: f64) -> Local {
+        let cells = self.cells() as f64;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place from 0 to 1 times a small count")]
+        let cell = ((u * cells) as usize).min(self.cells() - 1);
+        let t = u * cells - cell as f64;
+        let ([from, m0], [to, m1]) = (self.0[cell], self.0[cell + 1]);
+        let cubic = |axis: usize| {
+            let (rise, a, b) = (to[axis] - from[axis], m0[axis] / cells, m1[axis] / cells);
+            let (c, d) = (3.0 * rise - 2.0 * a - b, a + b - 2.0 * rise);
+            [from[axis] + t * (a + t * (c + t * d)), (a + t * (2.0 * c + 3.0 * t * d)) * cells, (2.0 * c + 6.0 * t * d) * cells * cells]
+        };
+        let [x, y] = [cubic(0), cubic(1)];
+        Local { at: [x[0], y[0]], by: [x[1], y[1]], bend: [x[2], y[2]] }
+    }
+
+    /// The place between two others at which the distance to a wall across an axis is least; `sign` is that of what is inside, `half_m`
+    /// half the thickness.
+    pub(super) fn nearest_to_wall(&self, (axis, sign): (usize, f64), half_m: impl Fn(f64) -> f64, [low, high]: [f64; 2]) -> f64 {
+        let place = |i: usize| (i as f64 / self.cells() as f64).clamp(low, high);
+        let room = |i: usize| sign * self.local(place(i)).at[axis] - half_m(place(i));
+        let best = (0..=self.cells()).reduce(|b, i| if room(i) < room(b) { i } else { b }).unwrap_or(0);
+        let (mut u, most) = (place(best), 1.0 / self.cells() as f64);
+        let nearby = [(u - most).max(low), (u + most).min(high)];
+        for _ in 0..STEPS {
+            // The thickness is linear between its places: its slope counts, its bend does not.
+            let here = self.local(u);
+            let away = 1e-3 * most;
+            let taper = (half_m((u + away).min(1.0)) - half_m((u - away).max(0.0))) / ((u + away).min(1.0) - (u - away).max(0.0));
+            let (slope, bend) = (sign * here.by[axis] - taper, sign * here.bend[axis]);
+            let step = if bend > 0.0 { -slope / bend } else { -slope.signum() * most };
+            u = (u + step.clamp(-most, most)).clamp(nearby[0], nearby[1]);
+        }
+        u
+    }
+}
+
+/// The parts of two beams that are kept apart: without what is near a node that they share.
+pub(super) fn apart(network: &Network, [a, b]: [usize; 2]) -> [[f64; 2]; 2] {
+    let ends = |beam: usize| [network.beams[beam].start, network.beams[beam].end];
+    let part = |beam: usize, with: usize| {
+        let [start, end] = ends(beam).map(|node| if ends(with).contains(&node) { NEAR_JOINT } else { 0.0 });
+        [start, 1.0 - end]
+    };
+    [part(a, b), part(b, a)]
+}
+
+/// Where two beams are nearest, as parts of their lengths within two ranges: of the polygons through the places first, then by Newton's
+/// method on half the squared distance. Where the axes cross, nothing is nearer.
+pub(super) fn closest(lines: [&Line; 2], [range_u, range_v]: [[f64; 2]; 2]) -> (f64, f64) {
+    let (mut u, mut v) = of_polygons(lines, [range_u, range_v]);
+    for _ in 0..STEPS {
+        let (p, q) = (lines[0].local(u), lines[1].local(v));
+        let apart = minus(q.at, p.at);
+        let gradient = [-dot(apart, p.by), dot(apart, q.by)];
+        // At an end that the gradient presses against, only the other place moves.
+        let pressed = |at: f64, by: f64, [low, high]: [f64; 2]| (at <= low && by > 0.0) || (at >= high && by < 0.0);
+        let held = [pressed(u, gradient[0], range_u), pressed(v, gradient[1], range_v)];
+        let (uu, vv, uv) = (dot(p.by, p.by) - dot(apart, p.bend), dot(q.by, q.by) + dot(apart, q.bend), -dot(p.by, q.by));
+        let determinant = uu * vv - uv * uv;
+        let (du, dv) = match held {
+            [false, false] if determinant > 0.0 && uu > 0.0 => {
+                ((uv * gradient[1] - vv * gradient[0]) / determinant, (uv * gradient[0] - uu * gradient[1]) / determinant)
+            }
+            [false, true] if uu > 0.0 => (-gradient[0] / uu, 0.0),
+            [true, false] if vv > 0.0 => (0.0, -gradient[1] / vv),
+            _ => (0.0, 0.0),
+        };
+        let most = |line: &Line| 1.0 / line.cells() as f64;
+        u = (u + du.clamp(-most(lines[0]), most(lines[0]))).clamp(range_u[0], range_u[1]);
+        v = (v + dv.clamp(-most(lines[1]), most(lines[1]))).clamp(range_v[0], range_v[1]);
+    }
+    (u, v)
+}
+
+/// The same of the polygons through the places.
+fn of_polygons([one, other]: [&Line; 2], ranges: [[f64; 2]; 2]) -> (f64, f64) {
+    let cells = |line: &Line, [low, high]: [f64; 2]| {
+        let count = line.cells() as f64;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places from 0 to 1 times a small count")]
+        let ends = ((low * count).round() as usize, (high * count).round() as usize);
+        ends.0..ends.1
+    };
+    let (count_u, count_v) = (one.cells() as f64, other.cells() as f64);
+    let mut best = (f64::INFINITY, 0.0, 0.0);
+    let last = |line: &Line, i: usize, range: &Range<usize>| (i + STRIDE).min(range.end).min(line.cells());
+    let (own, its) = (cells(one, ranges[0]), cells(other, ranges[1]));
+    for i in own.clone().step_by(STRIDE) {
+        let i_end = last(one, i, &own);
+        for j in its.clone().step_by(STRIDE) {
+            let j_end = last(other, j, &its);
+            let (distance, s, t) = of_segments([one.0[i][0], one.0[i_end][0]], [other.0[j][0], other.0[j_end][0]]);
+            if distance < best.0 {
+                let along = |from: usize, to: usize, part: f64| from as f64 + part * (to - from) as f64;
+                best = (distance, along(i, i_end, s) / count_u, along(j, j_end, t) / count_v);
+            }
+        }
+    }
+    (best.1, best.2)
+}
+
+/// Squared distance of two segments, and the parts of them at which it is least: at an end of one of them, unless they cross.
+fn of_segments(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> (f64, f64, f64) {
+    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let (d, e, r) = (minus(one[1], one[0]), minus(other[1], other[0]), minus(other[0], one[0]));
+    let turn = cross(d, e);
+    if turn != 0.0 {
+        let (s, t) = (cross(r, e) / turn, cross(r, d) / turn);
+        if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
+            return (0.0, s, t);
+        }
+    }
+    let to_segment = |p: [f64; 2], [from, to]: [[f64; 2]; 2]| {
+        let (along, off) = (minus(to, from), minus(p, from));
+        let part = (dot(off, along) / dot(along, along).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let rest = [off[0] - part * along[0], off[1] - part * along[1]];
+        (dot(rest, rest), part)
+    };
+    let mut best = (f64::INFINITY, 0.0, 0.0);
+    for (i, end) in [0.0, 1.0].into_iter().enumerate() {
+        let (distance, part) = to_segment(one[i], other);
+        if distance < best.0 {
+            best = (distance, end, part);
+        }
+        let (distance, part) = to_segment(other[i], one);
+        if distance < best.0 {
+            best = (distance, part, end);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quarter of a circle of radius 1 about (x, 0), from the top to the right.
+    fn quarter(x: f64) -> Line {
+        use forcewright_base::maths;
+        let angle = std::f64::consts::FRAC_PI_2;
+        let place = |i: i32| {
+            let (sin, cos) = maths::sin_cos(angle * f64::from(i) / 16.0);
+            [[x + sin, cos], [angle * cos, -angle * sin]]
+        };
+        Line::new((0..=16).map(place).collect())
+    }
+
+    #[test]
+    fn a_circle_is_nearest_to_a_wall_where_it_is_parallel_to_it() {
+        // To a wall on the right at its end, to one above at its start; between two places at the nearer one.
+        assert!((quarter(0.0).nearest_to_wall((0, -1.0), |_| 0.1, [0.0, 1.0]) - 1.0).abs() < 1e-6);
+        assert!(quarter(0.0).nearest_to_wall((1, -1.0), |_| 0.1, [0.0, 1.0]).abs() < 1e-6);
+        assert!((quarter(0.0).nearest_to_wall((0, -1.0), |_| 0.1, [0.2, 0.7]) - 0.7).abs() < 1e-12);
+        // Thicker by a tenth per place: where the slope of the circle is a tenth.
+        let u = quarter(0.0).nearest_to_wall((1, -1.0), |u| 0.1 * u, [0.0, 1.0]);
+        let angle = std::f64::consts::FRAC_PI_2;
+        assert!((angle * forcewright_base::maths::sin(angle * u) - 0.1).abs() < 1e-4, "{u}");
+    }
+
+    #[test]
+    fn two_circles_are_nearest_on_the_line_of_their_centres() {
+        // The second is mirrored: its line runs over the left half.
+        let mirrored = Line::new(quarter(-3.0).0.iter().map(|[at, by]| [[-at[0], at[1]], [-by[0], by[1]]]).collect());
+        let (u, v) = closest([&quarter(0.0), &mirrored], [[0.0, 1.0]; 2]);
+        assert!((u - 1.0).abs() < 1e-6 && (v - 1.0).abs() < 1e-6, "{u} {v}");
+        let (u, v) = closest([&quarter(0.0), &mirrored], [[0.0, 0.75]; 2]);
+        assert!((u - 0.75).abs() < 1e-6 && (v - 0.75).abs() < 1e-6, "{u} {v}");
+    }
+
+    #[test]
+    fn lines_that_cross_meet() {
+        // Centres one radius apart, the second line mirrored: they cross half way between.
+        let mirrored = Line::new(quarter(-1.0).0.iter().map(|[at, by]| [[-at[0], at[1]], [-by[0], by[1]]]).collect());
+        let (u, v) = closest([&quarter(0.0), &mirrored], [[0.0, 1.0]; 2]);
+        assert!((u - 1.0 / 3.0).abs() < 1e-5 && (v - 1.0 / 3.0).abs() < 1e-5, "{u} {v}");
+    }
+}

@@ -1,0 +1,381 @@
+//! From `[optimise]` and the requirements to a search: its goal, its bands, its limits.
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
+use forcewright_base::text::closest;
+use forcewright_base::units::Dimension;
+use forcewright_contract::describe::{Located, Section};
+use forcewright_contract::read::deferred_quantities;
+use forcewright_contract::studies::Objective;
+use forcewright_contract::tree::{Item, Value};
+use forcewright_study::evaluator::Variable;
+use forcewright_study::task::{Band, Goal, Limit, Step, Task};
+
+use super::knobs::Knobs;
+use super::search::{Block, Edge, Search};
+use crate::analysis::PAPER_BAND;
+use crate::design::{Design, Requirements};
+use crate::metrics::METRICS;
+
+/// What can be optimised, with what it means.
+const OBJECTIVES: &[(&str, &str)] = &[
+    ("force_deviation", "half width of the band that the force needs over `window`, or over the best stroke of `requirements.travel`"),
+    ("flat_ratio", "stroke inside the required band with a free level, over the travel"),
+    ("band_ratio", "stroke inside the required band around the nominal force, over the travel"),
+    ("force_at_end", "force at the full travel"),
+    ("force_ratio", "F(a)/F(b) − 1 with `window = [\"b\", \"a\"]`: eq. (1) of Lan, Wang & Chen 2010"),
+    ("stress_max", "largest stress over the travel"),
+    ("safety_factor", "yield stress over the largest stress"),
+    ("force_target", "sum of squared differences to the curve in `target`"),
+];
+
+/// Where a window that may move begins at first, as part of the travel.
+const FIRST_START: f64 = 0.4;
+/// A window is never shorter than this part of the travel.
+const LEAST_WINDOW: f64 = 0.02;
+
+/// A goal while it is put together.
+struct Posed {
+    goal: Goal,
+    bands: Vec<Band>,
+    /// Bands and goal of a step before, with the window held.
+    before: Option<(Goal, Vec<Band>)>,
+}
+
+/// Builds the task; what is wrong with the objective is reported.
+pub(crate) fn task(design: &Design, knobs: Knobs, objective: &Section<Objective>, diagnostics: &mut Diagnostics) -> Option<Task> {
+    let (name, large) = named(objective, diagnostics)?;
+    let wanted = Wanted::new(design, name, objective, diagnostics)?;
+    let search = Search::new(design, knobs, wanted.variables.clone(), wanted.window, wanted.blocks.clone());
+    let limits = limits(design, &search, &wanted);
+    let posed = wanted.pose(design, &search, large);
+    let own = search.knobs.variables.len()..search.knobs.variables.len() + wanted.variables.len();
+    let mut steps = Vec::new();
+    if let Some((goal, bands)) = posed.before {
+        steps.push(Step { goal, bands, held: own.collect() });
+    }
+    steps.push(Step { goal: posed.goal, bands: posed.bands, held: Vec::new() });
+    let title = format!("`{name}` as {} as possible", if large { "large" } else { "small" });
+    Some(Task { evaluator: Box::new(search), title, steps, limits })
+}
+
+/// The objective's name, and whether it is made large.
+fn named<'a>(objective: &'a Section<Objective>, diagnostics: &mut Diagnostics) -> Option<(&'static str, bool)> {
+    let place = objective.present.as_ref().map(|p| p.span).unwrap_or_default();
+    let (slot, large): (&'a Located<String>, bool) = match (&objective.minimise, &objective.maximise) {
+        (Some(slot), None) => (slot, false),
+        (None, Some(slot)) => (slot, true),
+        (Some(_), Some(other)) => {
+            diagnostics.push(
+                Diagnostic::error("E0305", other.span, "`minimise` and `maximise` exclude each other")
+                    .label("the second of two")
+                    .help("keep one"),
+            );
+            return None;
+        }
+        (None, None) => {
+            diagnostics.push(
+                Diagnostic::error("E0302", place, "the objective says nothing")
+                    .label("this table")
+                    .help("give `minimise = \"force_deviation\"`, `maximise = \"flat_ratio\"` or another"),
+            );
+            return None;
+        }
+    };
+    let names = || OBJECTIVES.iter().map(|(name, _)| *name);
+    let Some(name) = names().find(|name| *name == slot.value) else {
+        let all = OBJECTIVES.iter().map(|(name, doc)| format!("`{name}`: {doc}")).collect::<Vec<_>>().join("; ");
+        let help = closest(&slot.value, names()).map_or(all, |near| format!("did you mean `{near}`?"));
+        diagnostics
+            .push(Diagnostic::error("E0315", slot.span, format!("`{}` cannot be optimised", slot.value)).label("no objective").help(help));
+        return None;
+    };
+    let sense = match name {
+        "force_deviation" | "force_ratio" | "force_target" | "stress_max" => Some(false),
+        "flat_ratio" | "band_ratio" | "safety_factor" => Some(true),
+        _ => None,
+    };
+    if sense.is_some_and(|s| s != large) {
+        let (right, wrong) = if large { ("minimise", "maximise") } else { ("maximise", "minimise") };
+        diagnostics.push(
+            Diagnostic::error("E0315", slot.span, format!("`{name}` has no best value that way"))
+                .label("the wrong way round")
+                .help(format!("write `{right} = \"{name}\"` instead of `{wrong}`")),
+        );
+        return None;
+    }
+    Some((name, large))
+}
+
+/// What the evaluator must compute for an objective and the requirements.
+struct Wanted {
+    name: &'static str,
+    variables: Vec<Variable>,
+    window: Option<[Edge; 2]>,
+    blocks: Vec<Block>,
+    target_n: Vec<f64>,
+}
+
+impl Wanted {
+    fn new(design: &Design, name: &'static str, objective: &Section<Objective>, diagnostics: &mut Diagnostics) -> Option<Self> {
+        let mut wanted = Self { name, variables: Vec::new(), window: None, blocks: Vec::new(), target_n: Vec::new() };
+        let requirements = design.requirements.as_ref();
+        let typed = match &objective.window {
+            None => None,
+            Some(slot) => Some(window(slot, design, diagnostics)?),
+        };
+        match (name, typed) {
+            ("force_deviation", Some([start, end])) => wanted.window = Some([Edge::Fixed(start), Edge::Fixed(end)]),
+            ("force_ratio", Some([b, a])) => wanted.blocks.push(Block::ForceRatio([a, b])),
+            ("force_ratio", None) => {
+                let place = objective.present.as_ref().map(|p| p.span).unwrap_or_default();
+                diagnostics.push(
+                    Diagnostic::error("E0302", place, "`force_ratio` needs two displacements")
+                        .help("give `window = [\"4 mm\", \"8.8 mm\"]`"),
+                );
+                return None;
+            }
+            ("force_target", _) => wanted.target(objective, design, diagnostics)?,
+            ("force_deviation" | "flat_ratio" | "band_ratio", None) => wanted.moving_window(design),
+            (_, Some(_)) => {
+                let span = objective.window.as_ref().map(|w| w.span).unwrap_or_default();
+                diagnostics.push(
+                    Diagnostic::error("E0305", span, format!("`{name}` has no window"))
+                        .label("not needed")
+                        .help("remove it; `force_deviation` and `force_ratio` have one"),
+                );
+                return None;
+            }
+            _ if requirements.is_some_and(|r| r.force.is_some()) => wanted.moving_window(design),
+            _ => {}
+        }
+        if wanted.window.is_some() {
+            wanted.blocks.push(Block::Window);
+        }
+        if wanted.window.is_some_and(|w| w.iter().any(|e| matches!(e, Edge::Moves(_)))) {
+            wanted.blocks.push(Block::WindowLength);
+        }
+        if name == "force_at_end" || limit(requirements, "force_at_end").is_some() {
+            wanted.blocks.push(Block::Forces(vec![design.load_end]));
+        }
+        if requirements.is_some_and(|r| r.stiffness_min.is_finite() || r.stiffness_max.is_some()) {
+            wanted.blocks.push(Block::Slopes);
+        }
+        let stressed = requirements.is_some_and(|r| r.stress.is_some())
+            || ["stress_max", "safety_factor"].iter().any(|n| *n == name || limit(requirements, n).is_some());
+        if stressed {
+            wanted.blocks.push(Block::Stress);
+        }
+        wanted.blocks.extend(requirements.and_then(|r| r.envelope).map(Block::Envelope));
+        if limit(requirements, "length_ratio_max").is_some() {
+            wanted.blocks.push(Block::LengthRatio);
+        }
+        if limit(requirements, "clearance_min").is_some() {
+            let beams = design.network.beams.len();
+            wanted.blocks.push(Block::Clearance((0..beams).flat_map(|a| (a + 1..beams).map(move |b| [a, b])).collect()));
+        }
+        Some(wanted)
+    }
+
+    /// A window whose edges the search moves.
+    fn moving_window(&mut self, design: &Design) {
+        let travel_m = design.load_end;
+        let wanted_m = design.requirements.as_ref().and_then(|r| r.travel_m).unwrap_or(0.0);
+        let edge = |path: &str, nominal| Variable { path: path.to_owned(), unit: "m", nominal, lower: 0.0, upper: travel_m };
+        let start = (FIRST_START * travel_m).min(travel_m - wanted_m).max(0.0);
+        self.variables = vec![edge("window_start", start), edge("window_end", travel_m)];
+        self.window = Some([Edge::Moves(0), Edge::Moves(1)]);
+    }
+
+    fn target(&mut self, objective: &Section<Objective>, design: &Design, diagnostics: &mut Diagnostics) -> Option<()> {
+        let place = objective.present.as_ref().map(|p| p.span).unwrap_or_default();
+        let how = "give `target = [[\"2 mm\", \"5 N\"], [\"4 mm\", \"7 N\"]]`";
+        let Some(Located { value: Value::List(pairs), span, .. }) = &objective.target else {
+            diagnostics.push(Diagnostic::error("E0302", place, "`force_target` needs a curve").help(how));
+            return None;
+        };
+        let mut curve = Vec::new();
+        for Item { value, span } in pairs {
+            let one = |item: &Item, dimension| {
+                Some(*deferred_quantities(&Located::new(item.value.clone(), item.span), dimension, diagnostics)?.first()?)
+            };
+            let mut one = one;
+            let pair = match value {
+                Value::List(two) if two.len() == 2 => one(&two[0], Dimension::Length).zip(one(&two[1], Dimension::Force)),
+                _ => None,
+            };
+            match pair {
+                Some((at, force)) if at > 0.0 && at <= design.load_end => curve.push((at, force)),
+                _ => {
+                    diagnostics.push(
+                        Diagnostic::error("E0204", *span, "a point of the curve is a displacement within the travel and a force")
+                            .label("this point")
+                            .help(how),
+                    );
+                    return None;
+                }
+            }
+        }
+        if curve.is_empty() {
+            diagnostics.push(Diagnostic::error("E0302", *span, "the curve is empty").help(how));
+            return None;
+        }
+        self.blocks.push(Block::Forces(curve.iter().map(|c| c.0).collect()));
+        self.target_n = curve.iter().map(|c| c.1).collect();
+        Some(())
+    }
+
+    fn pose(&self, design: &Design, search: &Search, large: bool) -> Posed {
+        let requirements = design.requirements.as_ref();
+        let (half_width, nominal) = requirements.and_then(|r| r.force).unwrap_or((PAPER_BAND, None));
+        let band = |level, half_width| Band { values: search.values(&Block::Window), level, half_width };
+        let required = requirements.and_then(|r| r.force).is_some();
+        let plain = |goal| Posed {
+            goal,
+            bands: if required && self.window.is_some() { vec![band(nominal, Some(half_width))] } else { Vec::new() },
+            before: None,
+        };
+        let own = search.knobs.variables.len();
+        match self.name {
+            "force_deviation" => Posed { goal: Goal::HalfWidth, bands: vec![band(nominal, None)], before: None },
+            "flat_ratio" | "band_ratio" => {
+                let level = if self.name == "band_ratio" { nominal } else { None };
+                let per_travel = 1.0 / design.load_end;
+                Posed {
+                    goal: Goal::Variables(vec![(own, per_travel), (own + 1, -per_travel)]),
+                    bands: vec![band(level, Some(half_width))],
+                    before: Some((Goal::HalfWidth, vec![band(level, None)])),
+                }
+            }
+            "force_ratio" => {
+                let block = self.blocks.iter().find(|b| matches!(b, Block::ForceRatio(_)));
+                let at = block.map_or(0, |b| search.values(b).start);
+                // As close to zero as possible, from either side.
+                plain(Goal::Squares { values: at..at + 1, targets: vec![0.0], scale: 1.0 })
+            }
+            "force_target" => {
+                let block = self.blocks.iter().find(|b| matches!(b, Block::Forces(at) if at.len() == self.target_n.len()));
+                let values = block.map_or(0..0, |b| search.values(b));
+                let scale = self.target_n.iter().fold(f64::MIN_POSITIVE, |m, f| m.max(f.abs()));
+                plain(Goal::Squares { values, targets: self.target_n.clone(), scale })
+            }
+            "force_at_end" => {
+                let at = search.values(&Block::Forces(vec![design.load_end])).start;
+                plain(Goal::Values(vec![(at, if large { -1.0 } else { 1.0 })]))
+            }
+            // The largest stress is small where the safety factor is large.
+            _ => {
+                let scale = design.common_allowable_pa().or(design.yield_pa(0)).unwrap_or(1e6);
+                plain(Goal::Largest { values: search.values(&Block::Stress), scale })
+            }
+        }
+    }
+}
+
+/// A limit on a metric: least and largest value.
+fn limit(requirements: Option<&Requirements>, name: &str) -> Option<(Option<f64>, Option<f64>)> {
+    let limits = &requirements?.limits;
+    limits.iter().find(|(index, ..)| METRICS.get(*index).is_some_and(|m| m.name == name)).map(|(_, min, max, _)| (*min, *max))
+}
+
+/// Metrics on which a search keeps limits.
+const KEPT: [&str; 9] = [
+    "force_at_end",
+    "flat_force",
+    "flat_ratio",
+    "stress_max",
+    "safety_factor",
+    "length_ratio_max",
+    "clearance_min",
+    "envelope_margin",
+    "stiffness_min",
+];
+
+/// Requirements that a search does not see: they are checked at its end.
+pub(crate) fn not_kept(design: &Design) -> Vec<&'static str> {
+    let limits = design.requirements.iter().flat_map(|r| &r.limits);
+    limits.filter_map(|(index, ..)| METRICS.get(*index).map(|m| m.name)).filter(|name| !KEPT.contains(name)).collect()
+}
+
+/// Two displacements of a window.
+fn window(slot: &Located<Value>, design: &Design, diagnostics: &mut Diagnostics) -> Option<[f64; 2]> {
+    match deferred_quantities(slot, Dimension::Length, diagnostics)?[..] {
+        [from, to] if 0.0 <= from && from < to && to <= design.load_end => Some([from, to]),
+        _ => {
+            diagnostics.push(
+                Diagnostic::error("E0204", slot.span, "a window is two ascending displacements within the travel")
+                    .label("this window")
+                    .help("write it as `window = [\"4.2 mm\", \"13.6 mm\"]`"),
+            );
+            None
+        }
+    }
+}
+
+/// Requirements as limits on the evaluator's values.
+fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
+    let Some(requirements) = &design.requirements else { return Vec::new() };
+    let free = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut all = Vec::new();
+    let mut add = |name: &str, key: &str, block: &Block, (lower, upper): (f64, f64), scale: f64, unit| {
+        let values = search.values(block);
+        if !values.is_empty() && (lower > f64::NEG_INFINITY || upper < f64::INFINITY) {
+            all.push(Limit { name: name.to_owned(), key: key.to_owned(), values, lower, upper, scale, unit });
+        }
+    };
+    let of = |name: &str| limit(Some(requirements), name).unwrap_or((None, None));
+    let (size_m, stiffness) = (size_m(design), rigidity(design));
+    let least_stress = [
+        design.common_allowable_pa().or_else(|| (0..design.network.beams.len()).filter_map(|b| design.allowable_pa(b)).reduce(f64::min)),
+        of("stress_max").1,
+        of("safety_factor").0.and_then(|factor| Some(design.yield_pa(0)? / factor)),
+    ];
+    if let Some(allowed) = least_stress.into_iter().flatten().reduce(f64::min) {
+        add("stress", "requirements.stress", &Block::Stress, (-allowed, allowed), allowed, "Pa");
+    }
+    let slopes = (requirements.stiffness_min.max(of("stiffness_min").0.unwrap_or(free.0)), requirements.stiffness_max.unwrap_or(free.1));
+    add("stiffness", "requirements.stiffness", &Block::Slopes, slopes, stiffness, "N/m");
+    if let Some(envelope) = requirements.envelope {
+        let least = of("envelope_margin").0.unwrap_or(0.0);
+        add("envelope", "requirements.envelope", &Block::Envelope(envelope), (least, free.1), size_m, "m");
+    }
+    if let (Some(least), _) = of("clearance_min")
+        && let Some(block) = wanted.blocks.iter().find(|b| matches!(b, Block::Clearance(_)))
+    {
+        add("clearance", "requirements.limits.clearance_min", block, (least, free.1), size_m, "m");
+    }
+    let bounds = |name| {
+        let (min, max) = of(name);
+        (min.unwrap_or(free.0), max.unwrap_or(free.1))
+    };
+    add("beam length", "requirements.limits.length_ratio_max", &Block::LengthRatio, bounds("length_ratio_max"), 1.0, "1");
+    let force_n = stiffness * design.load_end;
+    add(
+        "force at the end",
+        "requirements.limits.force_at_end",
+        &Block::Forces(vec![design.load_end]),
+        bounds("force_at_end"),
+        force_n,
+        "N",
+    );
+    add("force", "requirements.limits.flat_force", &Block::Window, bounds("flat_force"), force_n, "N");
+    let travel_m = requirements.travel_m.filter(|_| requirements.force.is_some()).unwrap_or(0.0);
+    let flat_m = of("flat_ratio").0.unwrap_or(0.0) * design.load_end;
+    let shortest_m = travel_m.max(flat_m).max(LEAST_WINDOW * design.load_end);
+    add("travel", "requirements.travel", &Block::WindowLength, (shortest_m, free.1), design.load_end, "m");
+    all
+}
+
+/// Size of the drawn network, m.
+fn size_m(design: &Design) -> f64 {
+    design.network.beams.iter().map(|b| b.shape.length_m()).fold(0.0, f64::max)
+}
+
+/// A stiffness that bending gives to a design of this size, N/m: 3EI/L³ of its longest beam.
+fn rigidity(design: &Design) -> f64 {
+    let of = |b: &forcewright_beam::Beam| {
+        let s = &b.section;
+        let length_m = size_m(design);
+        s.young_pa * s.depth_m * s.thickness_m * s.thickness_m * s.thickness_m / (4.0 * length_m * length_m * length_m)
+    };
+    design.copies() * design.network.beams.iter().map(of).fold(0.0, f64::max)
+}
