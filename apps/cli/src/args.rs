@@ -15,6 +15,10 @@ pub(crate) fn command() -> Command {
         .subcommand(new())
         .subcommand(check())
         .subcommand(solve())
+        .subcommand(optimise())
+        .subcommand(sweep())
+        .subcommand(merge())
+        .subcommand(tolerance())
         .subcommand(reproduce())
         .subcommand(explain())
         .subcommand(materials())
@@ -81,6 +85,131 @@ fn solve() -> Command {
     choices(command).after_help(EXIT_CODES)
 }
 
+const OPTIMISE_HELP: &str = "\
+The section [optimise] of the file says what is made small or large and which numbers may change; requirements are kept. The first search
+starts from the design of the file, further ones are spread over the ranges. The same seed gives the same result.
+
+Writes FILE-optimised.toml (comments kept), report.html and result.json. Ctrl-C ends the search and keeps the best design so far.
+
+Exit codes: 0 the new design meets all requirements, 1 it does not (it is written all the same), 2 error in the file or the call, 3 no design could be computed, 4 input/output, 130 interrupted, best kept.";
+
+fn optimise() -> Command {
+    let number = |name: &'static str, help: &'static str| Arg::new(name).long(name).value_name("N").help(help);
+    let command = Command::new("optimise")
+        .about("Search for a better design: a new project file, and a report of the search")
+        .arg(file().help("Project file with a section [optimise]"))
+        .arg(
+            Arg::new("out")
+                .long("out")
+                .value_name("DIR")
+                .required(true)
+                .value_hint(ValueHint::DirPath)
+                .value_parser(clap::value_parser!(std::path::PathBuf))
+                .help("Write the new project file, report.html and result.json into this folder"),
+        )
+        .arg(number("starts", "Searches, instead of `starts` of the file").value_parser(clap::value_parser!(u32).range(1..=100_000)))
+        .arg(number("seed", "Seed of the starts after the first, instead of `seed` of the file").value_parser(clap::value_parser!(u32)))
+        .arg(json());
+    choices(command).after_help(OPTIMISE_HELP)
+}
+
+const SWEEP_HELP: &str = "\
+Values of --vary:
+  KEY=0.8mm..1.2mm:9          so many, evenly spaced, both ends included
+  KEY=0.8mm,1mm,1.2mm         a list of quantities, numbers or words
+  KEY=sobol(0.8mm..1.2mm)     a space-filling sample, with --points
+KEY is a path as for --set; design.nodes.n3.at.x and design.beams.b1.bend.2 are single numbers.
+Several --vary make the full grid, the first slowest. Values in the table are SI, with the unit in the header.
+
+With --out, rows are appended to OUT.part. After an interruption of any kind the same command goes on there and ends with the same files.
+
+Exit codes: 0 some design meets all requirements, 1 none does, 2 error in the file or the call, 3 no design was computed to its end, 4 input/output, 130 interrupted, rows kept.";
+
+fn sweep() -> Command {
+    let option = |name: &'static str, value: &'static str, help: &'static str| Arg::new(name).long(name).value_name(value).help(help);
+    let command = Command::new("sweep")
+        .about("Analyse many designs: a table of results over values of some keys")
+        .arg(file().help("Project file"))
+        .arg(
+            option("vary", "KEY=SPEC", "Values of a key, such as design.thickness=0.8mm..1.2mm:9 (may be repeated)")
+                .required(true)
+                .action(ArgAction::Append),
+        )
+        .arg(out())
+        .arg(
+            option("metrics", "NAMES", "Only these metrics, in this order, such as force_at_end,stress_max")
+                .value_delimiter(',')
+                .action(ArgAction::Append),
+        )
+        .arg(formats())
+        .arg(option("points", "N", "Points of the sample, for sobol(…)").value_parser(clap::value_parser!(u64).range(1..)))
+        .arg(option("seed", "N", "Seed of the sample").value_parser(clap::value_parser!(u64)).default_value("0"))
+        .arg(option("shard", "I/N", "Compute one of N parts, which `forcewright merge` joins"))
+        .arg(
+            option("threads", "N", "Designs computed at once; without it, as many as the machine has processors")
+                .value_parser(clap::value_parser!(u16).range(1..)),
+        )
+        .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Overwrite files of another sweep"))
+        .arg(Arg::new("yes").long("yes").action(ArgAction::SetTrue).help("Confirm a sweep of more than ten million designs"))
+        .arg(json());
+    choices(command).after_help(SWEEP_HELP)
+}
+
+fn out() -> Arg {
+    Arg::new("out")
+        .long("out")
+        .value_name("PATH")
+        .value_hint(ValueHint::AnyPath)
+        .value_parser(clap::value_parser!(std::path::PathBuf))
+        .help("Write OUT.csv and OUT.json; a folder gets sweep.csv and sweep.json")
+}
+
+fn formats() -> Arg {
+    Arg::new("format")
+        .long("format")
+        .value_name("FORMATS")
+        .value_delimiter(',')
+        .action(ArgAction::Append)
+        .value_parser(["csv", "npy"])
+        .default_value("csv")
+        .help("What to write: csv, npy (an array of doubles for NumPy), or csv,npy")
+}
+
+fn merge() -> Command {
+    let part = file().id("part").value_name("PART").num_args(1..).help("The files OUT.i-of-n.part, in any order");
+    Command::new("merge")
+        .about("Join the parts of a sweep that were computed with --shard: the same files as in one run")
+        .arg(file().id("out").value_name("OUT").help("OUT.csv, or a folder for sweep.csv"))
+        .arg(part)
+        .arg(formats())
+        .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Overwrite files of another sweep"))
+        .arg(json())
+        .after_help("Exit codes: 0 some design meets all requirements, 1 none does, 2 the parts do not make a whole, 3 no design was computed to its end, 4 input/output.")
+}
+
+fn tolerance() -> Command {
+    let count = |name: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name("N").value_parser(clap::value_parser!(u32)).help(help)
+    };
+    let command = Command::new("tolerance")
+        .about("Draw designs from the scatter of making (± and [tolerance]): yield, causes, needed tolerances")
+        .arg(file().help("Project file"))
+        .arg(
+            Arg::new("out")
+                .long("out")
+                .value_name("DIR")
+                .value_hint(ValueHint::DirPath)
+                .value_parser(clap::value_parser!(std::path::PathBuf))
+                .help("Write report.html and result.json into this folder"),
+        )
+        .arg(count("samples", "Designs drawn; without it those of the file").value_parser(clap::value_parser!(u32).range(64..=100_000_000)))
+        .arg(count("seed", "Seed of the draws; without it that of the file"))
+        .arg(json());
+    choices(command).after_help(
+        "Exit codes: 0 target yield met, 1 missed, 2 error in the file or the call, 3 the nominal design has no curve, 4 input/output, 130 interrupted.",
+    )
+}
+
 fn reproduce() -> Command {
     let papers: Vec<&'static str> = forcewright::reproductions().map(|r| r.key).collect();
     Command::new("reproduce")
@@ -101,6 +230,7 @@ fn explain() -> Command {
 fn materials() -> Command {
     Command::new("materials")
         .about("List the catalogue of materials, with the kind and source of each value")
+        .arg(Arg::new("material").value_name("MATERIAL").help("Name of an entry, such as POM-C; without it, all"))
         .arg(Arg::new("format").long("format").value_parser(["text", "markdown"]).default_value("text").help("How to print it"))
 }
 

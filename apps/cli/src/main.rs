@@ -3,6 +3,7 @@
 mod args;
 mod commands;
 mod exit;
+mod interrupt;
 mod output;
 mod progress;
 mod table;
@@ -25,6 +26,10 @@ fn main() -> ExitCode {
         Some(("new", m)) => commands::new::run(m),
         Some(("check", m)) => commands::check::run(m),
         Some(("solve", m)) => commands::solve::run(m),
+        Some(("sweep", m)) => commands::sweep::run(m),
+        Some(("optimise", m)) => commands::optimise::run(m),
+        Some(("tolerance", m)) => commands::tolerance::run(m),
+        Some(("merge", m)) => commands::merge::run(m),
         Some(("reproduce", m)) => commands::reproduce::run(m),
         Some(("explain", m)) => commands::explain::run(m),
         Some(("materials", m)) => commands::materials::run(m),

@@ -120,14 +120,19 @@ fn readable_by_others(_: &std::fs::File) -> io::Result<()> {
 
 /// Says why a file could not be written; the exit code for it.
 pub(crate) fn write_failed(failed: &WriteError, json: bool) -> u8 {
-    let way_out = match failed.error.kind() {
+    file_failed(&failed.path, &failed.error, json)
+}
+
+/// Says why a file could not be written; the exit code for it.
+pub(crate) fn file_failed(path: &Path, error: &io::Error, json: bool) -> u8 {
+    let way_out = match error.kind() {
         ErrorKind::PermissionDenied => "choose a folder that you may write to",
         ErrorKind::StorageFull => "free some space",
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "a file is in the way; choose another folder",
         ErrorKind::IsADirectory => "a folder is in the way; choose another place",
         _ => "check the path",
     };
-    complain("E0120", &format!("cannot write `{}`: {}", failed.path.display(), failed.error), way_out, json);
+    complain("E0120", &format!("cannot write `{}`: {error}", path.display()), way_out, json);
     exit::IO
 }
 

@@ -275,3 +275,32 @@ fn titles_do_not_reach_the_terminal_raw() {
     run.assert_plain("a title with escapes");
     assert!(run.stdout.contains("·]0;x··[31m"), "{}", run.stdout);
 }
+
+#[test]
+fn one_material_or_a_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = run(folder.path(), &["materials", "POM-C"]);
+    assert_eq!(one.code, Some(0), "{}", one.stderr);
+    assert!(one.stdout.contains("POM-C") && one.stdout.contains("sources: ") && !one.stdout.contains("C75S"), "{}", one.stdout);
+    let wrong = run(folder.path(), &["materials", "POMM"]);
+    assert_eq!(wrong.code, Some(2));
+    assert!(wrong.stderr.contains("did you mean `POM") && wrong.stdout.is_empty(), "{}", wrong.stderr);
+    let strange = run(folder.path(), &["materials", "unobtainium"]);
+    assert!(strange.stderr.contains("`forcewright materials` lists all"), "{}", strange.stderr);
+}
+
+/// One cause, one message: a warning of the file is said once, and a shape that cannot be read is not missing.
+#[test]
+fn nothing_is_said_twice() {
+    let text = common::EXAMPLE.replace("[process]", "[material.spare]\nuse = \"POM-C\"\n[process]");
+    let folder = folder_with(text.as_bytes());
+    let run_once = run(folder.path(), &["solve", "a.toml"]);
+    let all = format!("{}{}", run_once.stdout, run_once.stderr);
+    assert_eq!(all.matches("W0509").count(), 1, "{all}");
+    assert!(run_once.stdout.contains("W0502"), "{all}");
+    for shape in ["through = [[\"20 mm\", \"10 mmm\"]]", "through = [\"20 mm\", \"10 mm\"]", "arc = \"20 mm\""] {
+        let folder = folder_with(common::EXAMPLE.replace("bend = [1.3092, -1.5707]", shape).as_bytes());
+        let refused = run(folder.path(), &["check", "a.toml"]);
+        assert!(refused.code == Some(2) && refused.stderr.matches("error[").count() == 1, "{}", refused.stderr);
+    }
+}

@@ -16,7 +16,17 @@ macro_rules! examples {
 }
 
 /// Every example, in the order in which to look at them.
-pub const EXAMPLES: &[Example] = examples!["compliant/cantilever", "compliant/lan-table3", "compliant/lan-thin", "compliant/lan-sub-cfm"];
+pub const EXAMPLES: &[Example] = examples![
+    "compliant/cantilever",
+    "compliant/tapered-spring",
+    "compliant/parallel-guide",
+    "compliant/preloaded-guide",
+    "compliant/lan-table3",
+    "compliant/lan-thin",
+    "compliant/lan-sub-cfm",
+    "compliant/optimise-lan-box",
+    "compliant/tolerance-lan-thin",
+];
 
 /// An example by its name, with or without its family.
 pub fn find(name: &str) -> Option<&'static Example> {

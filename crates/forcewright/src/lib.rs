@@ -17,6 +17,9 @@
 
 pub mod gallery;
 mod load;
+mod optimise;
+pub mod sweep;
+mod tolerance;
 
 pub use forcewright_base as base;
 pub use forcewright_compliant as compliant;
@@ -24,9 +27,12 @@ pub use forcewright_contract as contract;
 pub use forcewright_elements as elements;
 pub use forcewright_model as model;
 pub use forcewright_report as report;
+pub use forcewright_study as study;
 
 pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
 pub use load::{Loaded, Refused};
+pub use optimise::{Optimised, Wording};
+pub use tolerance::{NoTolerance, ToleranceChoices, Toleranced};
 
 use forcewright_base::diagnostics::Explanation;
 use forcewright_contract::family::{Entry, Family, Reproduction};
@@ -44,7 +50,8 @@ pub fn family(id: &str) -> Option<&'static dyn Family> {
 
 /// The long story of every code, in order.
 pub fn explanations() -> impl Iterator<Item = &'static Explanation> {
-    forcewright_contract::codes::CODES.iter().chain(FAMILIES.iter().flat_map(|f| f.explanations()))
+    let studies = forcewright_contract::scatter::CODES.iter().chain(tolerance::CODES);
+    forcewright_contract::codes::CODES.iter().chain(sweep::CODES).chain(studies).chain(FAMILIES.iter().flat_map(|f| f.explanations()))
 }
 
 /// Every paper whose numbers are reproduced.

@@ -20,7 +20,7 @@ pub struct Loaded {
     pub project: Project,
     /// SHA-256 of everything read; for a file that stands alone, that of the file.
     pub input_sha256: String,
-    understood: Box<dyn Understood>,
+    pub(crate) understood: Box<dyn Understood>,
 }
 
 /// A project that cannot be used, and why.
@@ -100,6 +100,7 @@ impl Loaded {
             input_name: input_name.to_owned(),
             input_sha256: self.input_sha256.clone(),
             command: command.to_owned(),
+            study: None,
             figures: analysis.figures,
             parameters: self.understood.parameters(),
             model: analysis.model,
@@ -132,7 +133,8 @@ fn family_of(project: &mut Project) -> Option<&'static dyn Family> {
     family
 }
 
-fn hash(sources: &Sources) -> String {
+/// SHA-256 of everything read, in hexadecimal.
+pub(crate) fn hash(sources: &Sources) -> String {
     let mut hasher = Sha256::new();
     for (index, source) in sources.iter().enumerate() {
         if index > 0 {
@@ -141,7 +143,12 @@ fn hash(sources: &Sources) -> String {
         }
         hasher.update(source.text.as_bytes());
     }
-    hasher.finalize().iter().fold(String::new(), |mut text, byte| {
+    hex(&hasher.finalize())
+}
+
+/// Bytes in hexadecimal.
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
     })

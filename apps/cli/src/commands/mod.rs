@@ -4,10 +4,14 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod explain;
 pub(crate) mod materials;
+pub(crate) mod merge;
 pub(crate) mod new;
+pub(crate) mod optimise;
 pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod solve;
+pub(crate) mod sweep;
+pub(crate) mod tolerance;
 
 use clap::ArgMatches;
 use forcewright::base::diagnostics::MOST_SHOWN;
@@ -24,6 +28,9 @@ pub(crate) fn welcome() -> u8 {
            forcewright new --list                         examples to start from\n  \
            forcewright new lan-table3                     a project file to edit\n  \
            forcewright solve lan-table3.toml --out out    the curve, the checks, and a report\n  \
+           forcewright sweep lan-table3.toml --vary design.thickness=0.9mm..1.1mm:5    a table of designs\n  \
+           forcewright optimise FILE --out out            a better design, within ranges and requirements\n  \
+           forcewright tolerance tolerance-lan-thin.toml  the yield under the scatter of making\n  \
            forcewright reproduce lan2010                  the paper's numbers beside ours\n  \
            forcewright materials                          what `material.use` can name\n  \
            forcewright explain COMP002                    what a check or an error means\n\n\

@@ -39,18 +39,17 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         return output::write_failed(&failed, as_json);
     }
     let mut bar = Progress::new("solving");
-    let report = loaded.solve(&file.display().to_string(), &repeat_command(file, out, &choices), &mut |fraction| {
-        bar.show(fraction);
-        true
-    });
+    let report =
+        loaded.solve(&file.display().to_string(), &repeat_command("solve", file, out.map(PathBuf::as_path), &choices), &mut |fraction| {
+            bar.show(fraction);
+            true
+        });
     bar.done();
     let document = output::json_text(&json::document(&report.outcome, &report.input_sha256, &report.version));
     if as_json {
         output::print(&document);
     } else {
-        // Titles and names are typed by somebody: shown, not obeyed.
-        let shown: Vec<_> = summary(&report).lines().map(|line| visible(line).into_owned()).collect();
-        output::print(&coloured(shown.join("\n") + "\n", output::colour_on_stdout()));
+        show(&summary(&report, loaded.project.diagnostics.warnings().len()));
     }
     if let Some(folder) = out {
         let mut files = vec![
@@ -70,7 +69,15 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     exit_code(&report.outcome)
 }
 
-fn exit_code(outcome: &Outcome) -> u8 {
+/// Prints lines for people.
+pub(super) fn show(text: &str) {
+    // Titles and names are typed by somebody: shown, not obeyed.
+    let shown: Vec<_> = text.lines().map(|line| visible(line).into_owned()).collect();
+    output::print(&coloured(shown.join("\n") + "\n", output::colour_on_stdout()));
+}
+
+/// The exit code of a result.
+pub(super) fn exit_code(outcome: &Outcome) -> u8 {
     match outcome.status.kind {
         StatusKind::Interrupted => exit::INTERRUPTED,
         StatusKind::Complete if outcome.requirements_met() => exit::MET,
@@ -82,8 +89,8 @@ fn exit_code(outcome: &Outcome) -> u8 {
 }
 
 /// The command that makes this result again.
-fn repeat_command(file: &Path, out: Option<&PathBuf>, choices: &forcewright::Choices) -> String {
-    let mut command = format!("forcewright solve {}", quote(&file.display().to_string()));
+pub(super) fn repeat_command(command: &str, file: &Path, out: Option<&Path>, choices: &forcewright::Choices) -> String {
+    let mut command = format!("forcewright {command} {}", quote(&file.display().to_string()));
     if let Some(variant) = &choices.variant {
         let _ = write!(command, " --variant {}", quote(variant));
     }
@@ -97,12 +104,13 @@ fn repeat_command(file: &Path, out: Option<&PathBuf>, choices: &forcewright::Cho
 }
 
 /// Quotes a word for a POSIX shell where it needs it.
-fn quote(word: &str) -> String {
+pub(super) fn quote(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
     if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
-fn summary(report: &Report) -> String {
+/// What is printed; the last warnings of a report are those of the file, and so many of them have been shown with their places.
+pub(super) fn summary(report: &Report, shown: usize) -> String {
     let outcome = &report.outcome;
     let mut out = format!("{}\n", outcome.title);
     if let Some(variant) = &report.variant {
@@ -129,9 +137,10 @@ fn summary(report: &Report) -> String {
         .map(|m| vec![m.name.to_owned(), format_si(m.value, &m.display, 5), m.doc.to_owned()])
         .collect();
     out.push_str(&columns(&rows, &[Align::Left, Align::Right, Align::Left]));
-    if !outcome.warnings.is_empty() {
+    let warnings = outcome.warnings.get(..outcome.warnings.len().saturating_sub(shown)).unwrap_or_default();
+    if !warnings.is_empty() {
         out.push('\n');
-        for warning in &outcome.warnings {
+        for warning in warnings {
             let _ = writeln!(out, "warning[{}]: {}", warning.code, warning.message);
         }
     }
