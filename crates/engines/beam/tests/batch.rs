@@ -102,7 +102,8 @@ fn random_designs_agree_with_the_general_path() {
         (Theory::Inextensible, 3e-5, 40),
         (Theory::Reissner, 3e-5, 40),
     ] {
-        let networks = random_networks(77, count);
+        // Not a seed on which the constants of the engine were chosen.
+        let networks = random_networks(58_213, count);
         let settings = settings(theory, accuracy);
         let responses = solve_all(&networks, &stations, &settings);
         let (mut lanes, mut over, mut worst, mut ratios) = (0, [0; 2], [0.0_f64; 3], Vec::new());
@@ -135,8 +136,27 @@ fn random_designs_agree_with_the_general_path() {
         assert!(10 * lanes >= if accuracy < 1e-4 { 6 } else { 8 } * count, "{theory:?} {accuracy:e}: only {lanes} of {count} side by side");
         // What is asked for rests on estimates: it may be exceeded now and then, not by much, and not often.
         assert!(over[0] <= 1 && worst[0] < 1.5 && ratios[ratios.len() - 1] < 2.0, "{theory:?} {accuracy:e}: {worst:?} {over:?}");
-        assert!(over[1] <= 1 && worst[1] < 20.0, "{theory:?} {accuracy:e}: {worst:?} {over:?}");
+        assert!(over[1] == 0, "{theory:?} {accuracy:e}: {worst:?} {over:?}");
         assert!(worst[2] < 30.0, "{theory:?} {accuracy:e}: {worst:?}");
+    }
+}
+
+/// The largest stress is that of a maximum inside a beam which begins between two states or moves fast there.
+#[test]
+fn maxima_that_begin_or_run_between_states_are_found() {
+    let stations = stations(17e-3);
+    for (seed, index, theory) in [
+        (31_337, 211, Theory::Inextensible),
+        (31_337, 299, Theory::Inextensible),
+        (31_337, 936, Theory::Inextensible),
+        (2027, 573, Theory::Reissner),
+    ] {
+        let network = random_networks(seed, index + 1).remove(index);
+        let settings = settings(theory, 1e-4);
+        let response = solve_all(std::slice::from_ref(&network), &stations, &settings).remove(0).expect("a sound network");
+        let exact = trace(&network, &stations, &Settings { accuracy: 1e-9, ..settings }, &mut |_| true).expect("a sound network");
+        let [_, stress, _] = errors(&response, &exact);
+        assert!(side_by_side(&response, 1e-4) && stress < 5e-4, "{seed} {index}: {stress:e}");
     }
 }
 

@@ -2,9 +2,10 @@
 
 mod common;
 
-use common::{POM, SplitMix, add, cantilever, near, random_network, table3_by_nodes, table3_by_shapes};
+use common::{POM, SplitMix, add, bent_at_random, cantilever, near, random_network, table3_by_nodes, table3_by_shapes};
 use forcewright_beam::{
-    Counters, CurveSolver, Drive, NetworkError, Output, Parameter, Path, Point, Response, Settings, Shape, Support, Theory, trace,
+    Axis, Counters, CurveSolver, Derivatives, Drive, NetworkError, Output, Parameter, Path, Point, Response, Settings, Shape, Status,
+    Support, Theory, trace,
 };
 
 #[test]
@@ -91,8 +92,10 @@ fn random_designs_agree_with_the_general_path() {
         );
         // What is asked for rests on estimates: it may be exceeded now and then, not by much, and not often.
         assert!(all >= 140 && over <= 1 && worst < 1.2, "{accuracy:e}: {over} of {all}, worst {worst}");
-        assert!(worst_stress < 20.0, "{accuracy:e}: stress wrong by {worst_stress} times the accuracy");
-        assert!(stiff < 30.0 * accuracy, "{accuracy:e}: stiffness wrong by {stiff:e}");
+        assert!(worst_stress < 10.0, "{accuracy:e}: stress wrong by {worst_stress} times the accuracy");
+        // Slopes of states are right to the tangent of the last iteration, which is worst where the stiffness falls steeply: design 65 at
+        // its first station.
+        assert!(stiff < 35.0 * accuracy, "{accuracy:e}: stiffness wrong by {stiff:e}");
         assert!(general <= 3, "{accuracy:e}: {general} of {all} by the general path");
     }
 }
@@ -157,9 +160,9 @@ fn force_gradients_are_slopes_of_curves() {
 
 #[test]
 fn what_is_not_simple_goes_to_the_general_path() {
-    // A straight inextensible beam cannot be condensed at rest.
+    // A straight inextensible beam cannot be condensed at rest to the last digits.
     let network = cantilever(0.1, 0.0, POM, Support::Free, Drive::Displacement { node: 1, direction: [0.0, 1.0] });
-    let settings = Settings { theory: Theory::Inextensible, accuracy: 1e-6, ..Settings::default() };
+    let settings = Settings { theory: Theory::Inextensible, accuracy: 1e-8, ..Settings::default() };
     let stations = [0.01, 0.02];
     let mut solver = CurveSolver::new();
     let all = [Parameter::Depth(0), Parameter::Thickness(7)];
@@ -170,6 +173,72 @@ fn what_is_not_simple_goes_to_the_general_path() {
         near(response.force_gradient[2 * i] * POM.depth_m, response.force_n[i], 1e-9, "depth");
         assert!(response.force_gradient[2 * i + 1] == 0.0);
     }
+}
+
+/// Straight inextensible beams are softened in the tangent at rest, which leaves no trace in the curve.
+#[test]
+fn straight_beams_agree_with_the_general_path() {
+    let stations: Vec<f64> = (0..=20).map(|i| 13.6e-3 * f64::from(i) / 20.0).collect();
+    let (mut solver, mut random) = (CurveSolver::new(), SplitMix(5));
+    for index in 0..20 {
+        let network = bent_at_random(&mut random, 3.0, |_, _, _| 0.0).expect("straight beams span their chords");
+        let settings = Settings { theory: Theory::Inextensible, ..Settings::default() };
+        let exact = trace(&network, &stations, &Settings { accuracy: 1e-9, ..settings }, &mut |_| true).unwrap();
+        for accuracy in [1e-3, 1e-5] {
+            let mut states =
+                solver.solve_with_states(&network, &stations, &Settings { accuracy, ..settings }, &parameters(), &[0.0]).unwrap();
+            if !exact.status.is_complete() {
+                assert!(!states.response().status.is_complete(), "{index}");
+                continue;
+            }
+            let response = states.response();
+            let (force, stress) = errors(response, &exact);
+            assert!(!response.general && force <= accuracy && stress <= 10.0 * accuracy, "{index}: {force:e} {stress:e} at {accuracy:e}");
+            let wrong = response.stiffness_n_per_m[0] / exact.points[0].stiffness - 1.0;
+            assert!(wrong.abs() <= accuracy, "{index}: stiffness at rest {wrong:e} at {accuracy:e}");
+            let mut derivatives = Derivatives::default();
+            let asked = [Output::Stiffness, Output::Position { beam: 2, u: 0.5, axis: Axis::Y }];
+            states.derivatives(0, &asked, &mut derivatives).unwrap();
+            let gradients = exact.gradients().unwrap().at(&exact.points[0], &asked).unwrap();
+            for (row, gradient) in gradients.iter().enumerate() {
+                let ours = &derivatives.by_parameter[row * parameters().len()..];
+                let theirs: Vec<f64> = parameters().iter().map(|p| gradient.by(*p).unwrap_or(0.0)).collect();
+                let largest = theirs.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+                for (a, b) in ours.iter().zip(&theirs) {
+                    assert!((a - b).abs() <= 5.0 * accuracy * largest, "{index}: {a} {b} of {largest} at {accuracy:e}");
+                }
+            }
+        }
+    }
+}
+
+/// Strongly bent beams, some near the load at which they buckle between held ends, whose curves have sharp turns.
+#[test]
+fn wild_designs_seldom_need_the_general_path() {
+    let stations: Vec<f64> = (1..=34).map(|i| 13.6e-3 * f64::from(i) / 34.0).collect();
+    let (mut solver, mut random) = (CurveSolver::new(), SplitMix(11));
+    let (mut all, mut general, mut over) = (0, 0, 0);
+    for index in 0..60 {
+        let Ok(network) = bent_at_random(&mut random, 5.0, |random, _, _| random.around(3.0)) else { continue };
+        let settings = Settings { theory: Theory::Inextensible, accuracy: 1e-4, ..Settings::default() };
+        let exact = trace(&network, &stations, &Settings { accuracy: 1e-8, iteration_limit: 4000, ..settings }, &mut |_| true).unwrap();
+        if !exact.status.is_complete() {
+            continue;
+        }
+        let response = solver.solve(&network, &stations, &settings).unwrap();
+        all += 1;
+        general += usize::from(response.general);
+        let (force, stress) = errors(response, &exact);
+        over += usize::from(force > 1e-4 || stress > 1e-3);
+        assert!(force < 3e-4 && stress < 3e-3, "{index}: {force:e} {stress:e}");
+        solver.set_hasty(true);
+        let hasty = solver.solve(&network, &stations, &settings).unwrap();
+        let given_up = matches!(hasty.status, Status::StepTooSmall { .. });
+        assert!(!hasty.general && given_up != hasty.status.is_complete(), "{index}: {}", hasty.status);
+        solver.set_hasty(false);
+    }
+    println!("{all} designs, {general} by the general path, {over} over the accuracy");
+    assert!(all > 30 && general <= 2 && over <= 1, "{all} designs, {general} by the general path, {over} over the accuracy");
 }
 
 #[test]
@@ -277,10 +346,11 @@ fn buffers_do_not_grow() {
     let stations: Vec<f64> = (1..=34).map(|i| 17e-3 * f64::from(i) / 34.0).collect();
     let mut solver = CurveSolver::new();
     let all = parameters();
-    let mut random = SplitMix(3);
     let settings = Settings { theory: Theory::Inextensible, accuracy: 1e-3, ..Settings::default() };
     let mut rooms = Vec::new();
     for block in 0..4 {
+        // The same designs each time: room follows the hardest of them, not their number.
+        let mut random = SplitMix(3);
         for _ in 0..5000 {
             let network = random_network(&mut random, 2.0, 0.8).expect("mild shapes span their chords");
             solver.solve_with_gradient(&network, &stations, &settings, &all).unwrap();
@@ -288,7 +358,7 @@ fn buffers_do_not_grow() {
         rooms.push(solver.room());
         println!("after {} designs: room for {}", 5000 * (block + 1), solver.room());
     }
-    assert_eq!(rooms[1], rooms[3], "{rooms:?}");
+    assert_eq!(rooms[0], rooms[3], "{rooms:?}");
 }
 
 #[test]

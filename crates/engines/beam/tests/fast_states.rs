@@ -512,7 +512,7 @@ fn along_paths_of_other_drives() {
 fn what_does_not_exist_is_named() {
     let network = table3_by_nodes(POM);
     let (mut solver, mut into) = (CurveSolver::new(), Derivatives::default());
-    let settings = Settings { accuracy: 1e-4, ..Settings::default() };
+    let settings = Settings { accuracy: 1e-8, ..Settings::default() };
     for (states, index) in [(&[5e-3, 11e-3][..], 1), (&[-1e-3], 0), (&[f64::NAN], 0)] {
         let refused = solver.solve_with_states(&network, &[10e-3], &settings, &[], states).unwrap_err();
         assert_eq!(refused, NetworkError::States { index });

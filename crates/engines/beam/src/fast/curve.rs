@@ -52,6 +52,7 @@ pub struct CurveSolver {
     states: FastStates,
     general_states: Option<GeneralStates>,
     response: Response,
+    hasty: bool,
 }
 
 impl Default for CurveSolver {
@@ -72,7 +73,15 @@ impl CurveSolver {
             states: FastStates::default(),
             general_states: None,
             response: Response::default(),
+            hasty: false,
         }
+    }
+
+    /// Whether a design that the fast path is made for, but fails on, is left with [`Status::StepTooSmall`] where it failed instead of
+    /// being handed to the general path: near a fold or a branch, mostly, and at a hundred times the cost. For searches, which have other
+    /// designs to look at. Off at first.
+    pub fn set_hasty(&mut self, hasty: bool) {
+        self.hasty = hasty;
     }
 
     /// The curve of a network whose drive is a displacement, at ascending stations ≥ 0, m.
@@ -144,10 +153,16 @@ impl CurveSolver {
             return Err(NetworkError::States { index });
         }
         self.solve_all(network, stations_m, settings, parameters, states_m)?;
-        Ok(match &self.general_states {
+        Ok(self.states())
+    }
+
+    /// The curve that was solved last, with its states, for more of their outputs. Without states if there were none, or if the network
+    /// was refused.
+    pub fn states(&self) -> CurveStates<'_> {
+        match &self.general_states {
             Some(states) => CurveStates::general(&self.response, states),
             None => CurveStates::fast(&self.response, &self.states),
-        })
+        }
     }
 
     fn solve_all(
@@ -177,6 +192,7 @@ impl CurveSolver {
         if let Some(model) = model.filter(|m| m.plain) {
             let task = Task { network, model: &model, stations_m, accuracy };
             self.gradient.set(parameters);
+            let mut reached_m = 0.0;
             for level in if task.tight() { 2..4 } else { 0..4 } {
                 let run = self.run(level, &task, &mut counters, !parameters.is_empty());
                 match run.and_then(|()| self.run_states(level, &task, states_m, &mut counters)) {
@@ -185,9 +201,20 @@ impl CurveSolver {
                         (out.status, out.general, out.counters) = (Status::Complete, false, counters);
                         return Ok(());
                     }
-                    Err(GiveUp::Unresolved) => {}
-                    Err(GiveUp::Unsafe) => break,
+                    Err(why) => {
+                        reached_m = self.reached(level) * model.length_m;
+                        if why == GiveUp::Unsafe {
+                            break;
+                        }
+                    }
                 }
+            }
+            if self.hasty {
+                let out = &mut self.response;
+                out.clear();
+                (out.status, out.general, out.counters) = (Status::StepTooSmall { control: reached_m }, false, counters);
+                self.states.set(parameters);
+                return Ok(());
             }
         }
         self.general((network, stations_m, settings), parameters, states_m, counters)
@@ -202,6 +229,17 @@ impl CurveSolver {
             2 => self.large.run(task, counters, out, Some(&mut self.huge), gradient),
             _ => self.huge.run(task, counters, out, None::<&mut Walker<14, 20, 6>>, gradient),
         }
+    }
+
+    /// The largest displacement of a walk, dimensionless.
+    fn reached(&self, level: usize) -> f64 {
+        let controls = match level {
+            0 => &self.small.controls,
+            1 => &self.medium.controls,
+            2 => &self.large.controls,
+            _ => &self.huge.controls,
+        };
+        controls.iter().copied().fold(0.0, f64::max)
     }
 
     fn run_states(&mut self, level: usize, task: &Task, at_m: &[f64], counters: &mut Counters) -> Result<(), GiveUp> {

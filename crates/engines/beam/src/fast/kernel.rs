@@ -1,7 +1,8 @@
 //! The linearised equations of four beams at once, condensed to their end motions.
 //!
 //! Same formulation and symbols as `element.rs`; see there. Here the beam forces are eliminated too, which needs each beam to be
-//! flexible along both axes: a straight inextensible beam at rest is not, and is left to the general path.
+//! flexible along both axes: a straight inextensible beam at rest is not, and is softened a little in the tangent, never in the
+//! residual.
 
 #![allow(clippy::needless_range_loop, reason = "formulas of small matrices are read by their indices")]
 
@@ -10,12 +11,12 @@ use forcewright_base::quadrature::{GaussLegendre, legendre_values};
 use super::lanes::{LANES, Lane};
 use crate::element::root_of;
 
-/// Pivots below this fraction of the bending stiffness are left to the general path, which pivots.
-const SMALL_PIVOT: f64 = 1e-2;
-/// Smallest determinant of a beam's flexibility relative to the product of its diagonal.
+/// Pivots below this fraction of the bending stiffness are left to the general path, which pivots: elimination loses as many digits.
+const SMALL_PIVOT: f64 = 1e-5;
+/// A beam whose flexibility has a determinant below this part of its squared trace counts as straight.
 const SMALL_FLEXIBILITY: f64 = 1e-9;
-/// Smallest flexibility relative to L³/EI.
-const STIFF: f64 = 1e-12;
+/// What is added to the flexibility of a straight beam, as part of its trace: what its tangent is wrong by.
+const SOFTENING: f64 = 1e-8;
 
 /// Trial functions with `M` bubbles (degree `M + 1`) at `Q` quadrature points. `E = Q − M` is the number of modes beyond those solved
 /// for that one sweep through the moment equation adds: stress is a derivative and needs them.
@@ -233,6 +234,8 @@ pub(crate) struct Condensed<const M: usize, const Q: usize> {
     pub(crate) negative: [u32; LANES],
     /// The smallest ratio of a pivot to the least that is safe without pivoting. Not necessarily NaN where the state is.
     pub(crate) margin: Lane,
+    /// What was added to the flexibility of beams that are straight and inextensible; 0 for others.
+    softened: Lane,
     /// Largest rotation at the points.
     pub(crate) widest: Lane,
 }
@@ -244,17 +247,19 @@ pub(crate) struct NeedsPivoting;
 /// Evaluates and condenses four beams. `apart` is the relative displacement `u_B − u_A`.
 ///
 /// # Errors
-/// [`NeedsPivoting`] near a buckling load of a beam with held ends, and for beams that are straight and inextensible.
+/// [`NeedsPivoting`] near a buckling load of a beam with held ends, and, if the tangent must be `exact`, for beams that are straight and
+/// inextensible.
 #[inline]
 pub(crate) fn linearise<const M: usize, const Q: usize, const E: usize>(
     tables: &Tables<M, Q, E>,
     beams: &Beams<Q>,
     at: &Unknowns<M>,
-    apart: [Lane; 2],
+    (apart, exact): ([Lane; 2], bool),
     out: &mut Condensed<M, Q>,
 ) -> Result<(), NeedsPivoting> {
     condense(tables, beams, at, apart, Lane::sin_cos, out);
-    if out.margin.all_above(Lane::splat(1.0)) { Ok(()) } else { Err(NeedsPivoting) }
+    let usable = out.margin.all_above(Lane::splat(1.0)) && !(exact && out.softened != Lane::ZERO);
+    if usable { Ok(()) } else { Err(NeedsPivoting) }
 }
 
 /// The same with the verdict per lane, in [`Condensed::margin`]. No lane depends on the others, if none does in `sin_cos`.
@@ -283,7 +288,7 @@ pub(crate) fn condense<const M: usize, const Q: usize, const E: usize>(
     }
     first[2] += apart[0];
     first[3] += apart[1];
-    release(&second, &first, beams, at, out);
+    release(&second, &first, at, out);
 }
 
 /// Integrands at the quadrature points, with the weights and −L, and the sums over them that need no trial function.
@@ -449,18 +454,16 @@ fn eliminate<const M: usize>(
 
 /// Eliminates the force: the flexibility block C is negative definite for a stable beam.
 #[inline]
-fn release<const M: usize, const Q: usize>(
-    s: &[[Lane; 4]; 4],
-    g: &[Lane; 4],
-    beams: &Beams<Q>,
-    at: &Unknowns<M>,
-    out: &mut Condensed<M, Q>,
-) {
+fn release<const M: usize, const Q: usize>(s: &[[Lane; 4]; 4], g: &[Lane; 4], at: &Unknowns<M>, out: &mut Condensed<M, Q>) {
     let (c00, c01, c11) = (s[2][2], s[3][2], s[3][3]);
+    let trace = c00 + c11;
+    let straight = trace * trace * SMALL_FLEXIBILITY - (c00 * c11 - c01 * c01).abs();
+    let softening = Lane::where_above(straight, Lane::ZERO, trace * SOFTENING, Lane::ZERO);
+    out.softened = softening.abs();
+    let (c00, c11) = (c00 + softening, c11 + softening);
     let determinant = c00 * c11 - c01 * c01;
-    let size = beams.length * beams.length / beams.bending;
-    let flexible = (determinant.abs() / ((c00 * c11).abs() * SMALL_FLEXIBILITY)).min(c00.abs().min(c11.abs()) / (size * STIFF));
-    out.margin = out.margin.min(flexible);
+    // Written so that NaN fails.
+    out.margin = Lane::where_above(determinant.abs(), Lane::ZERO, out.margin, Lane::ZERO);
     for (lane, count) in out.negative.iter_mut().enumerate() {
         // Inertia of a symmetric 2 × 2 block.
         *count += if determinant.0[lane] < 0.0 {
@@ -519,6 +522,7 @@ impl<const M: usize, const Q: usize> Default for Condensed<M, Q> {
             points: Points { load: points, slope: points, by_h: points, by_v: points, gap: two, compliance: [zero; 3] },
             negative: [0; LANES],
             margin: zero,
+            softened: zero,
             widest: zero,
         }
     }

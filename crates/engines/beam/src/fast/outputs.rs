@@ -109,6 +109,21 @@ impl<'s> CurveStates<'s> {
         Ok(())
     }
 
+    /// The stress of a beam on a face at a place and a state, Pa; tension is positive.
+    ///
+    /// # Errors
+    /// [`GradientError::NoState`], [`GradientError::NoBeam`] or [`GradientError::NotOnBeam`].
+    pub fn stress_pa(&self, state: usize, beam: usize, u: f64, face: Face) -> Result<f64, GradientError> {
+        match &self.source {
+            Source::Fast(states, _) => Ok(states.get(state)?.on_beam(beam, u)?.stress_pa(u, face)[0]),
+            Source::General(_, states) if (0.0..=1.0).contains(&u) => {
+                let at = states.get(state)?.beams.get(beam).ok_or(GradientError::NoBeam { beam })?;
+                Ok(at.stress_pa(u)[usize::from(face == Face::Right)])
+            }
+            Source::General(..) => Err(GradientError::NotOnBeam { u }),
+        }
+    }
+
     /// The largest stress of a beam at a state, of one face or of both, with its place.
     ///
     /// # Errors

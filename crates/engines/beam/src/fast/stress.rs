@@ -22,6 +22,9 @@ const FAR: f64 = 0.5;
 /// Newton iterations for the place of a maximum.
 const MOST_ITERATIONS: usize = 6;
 
+/// A Newton step to a maximum, as part of the beam, after which one more is enough.
+const NEARLY_THERE: f64 = 0.05;
+
 /// Slopes of the modes at Chebyshev points, and what else does not depend on the network.
 #[derive(Debug)]
 pub(crate) struct Sampling<const M: usize, const E: usize> {
@@ -150,6 +153,18 @@ impl StressModel {
     }
 }
 
+/// A maximum of the stress inside a beam, with derivatives along a change of the beam.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Maximum {
+    pub(crate) stress: f64,
+    pub(crate) by: f64,
+    pub(crate) place: f64,
+    /// From bending alone.
+    pub(crate) place_by: f64,
+    /// The part of the second derivative of the stress that is due to the motion of its place.
+    pub(crate) drift: f64,
+}
+
 /// One beam between two states.
 pub(crate) struct OneBeam<'a, const M: usize, const E: usize> {
     pub(crate) ends: [f64; 2],
@@ -231,16 +246,39 @@ impl<'a, const M: usize, const E: usize> OneBeam<'a, M, E> {
         (self.force[0] * cos + self.force[1] * sin, self.force[1] * cos - self.force[0] * sin)
     }
 
-    /// Change of [`OneBeam::stress`] at a place along a change of the beam.
-    pub(crate) fn stress_by(&self, by: &Self, u: f64) -> f64 {
-        let ([phi, slope, ..], [d_phi, d_slope, ..]) = (self.field(u), by.field(u));
-        let mut change = self.factors[0].copysign(slope) * d_slope;
+    /// Place and height of the maximum next to a place between two others, good to start from, with the slope of the rotation there.
+    pub(crate) fn summit(&self, start: f64, between: (f64, f64)) -> (f64, f64, f64) {
+        let (mut at, mut last) = (start, (start, 0.0, 0.0));
+        for _ in 0..MOST_ITERATIONS {
+            let [stress, slope, bend, side] = self.stress_with_side(at);
+            let next = uphill(at, [slope, bend], between);
+            last = (next, stress + 0.5 * slope * (next - at), side);
+            if bend < 0.0 && (next - at).abs() < NEARLY_THERE {
+                break;
+            }
+            at = next;
+        }
+        last
+    }
+
+    /// The maximum very near a place, and how it changes along a change of the beam.
+    pub(crate) fn maximum_by(&self, by: &Self, u: f64) -> Maximum {
+        let ([phi, slope, first, second], [d_phi, d_slope, d_first, _]) = (self.field(u), by.field(u));
+        let sign = self.factors[0].copysign(slope);
+        let (mut stress, mut change, mut rise) = (sign * slope, sign * d_slope, 2.0 * sign * first);
         if self.factors[1] > 0.0 {
             let (along, across) = self.internal_force(u, phi);
             let (d_along, _) = by.internal_force(u, phi);
-            change += self.factors[1].copysign(along) * (d_along + across * d_phi);
+            let factor = self.factors[1].copysign(along);
+            stress += factor * along;
+            rise += factor * across * (slope_at(self.angle_rad, u) + slope);
+            change += factor * (d_along + across * d_phi);
         }
-        change
+        let (bend, twist) = (4.0 * sign * second, 2.0 * sign * d_first);
+        let step = if bend < 0.0 { (u - rise / bend).clamp(0.0, 1.0) - u } else { 0.0 };
+        // A flat maximum moves at no finite rate.
+        let place_by = -twist / bend;
+        Maximum { stress: stress + 0.5 * rise * step, by: change + twist * step, place: u + step, place_by, drift: twist * place_by }
     }
 
     /// The maximum next to a place, by Newton's method between two others; or less, if that is below `floor`.
@@ -249,9 +287,7 @@ impl<'a, const M: usize, const E: usize> OneBeam<'a, M, E> {
         for _ in 0..MOST_ITERATIONS {
             let [stress, slope, bend] = self.stress(at);
             best = best.max(stress);
-            // Where the curve is not that of a maximum, towards the higher side.
-            let newton = if bend < 0.0 { at - slope / bend } else { at + (0.2 * (high - low)).copysign(slope) };
-            let next = newton.clamp(low, high);
+            let next = uphill(at, [slope, bend], (low, high));
             let gain = 0.5 * slope * (next - at);
             // The parabola's gain is wrong by a small part of itself.
             if bend < 0.0 && (gain.abs() <= tolerance * best || stress + 4.0 * gain.abs() < floor) {
@@ -261,6 +297,12 @@ impl<'a, const M: usize, const E: usize> OneBeam<'a, M, E> {
         }
         best
     }
+}
+
+/// A Newton step to a maximum between two places; where the curve is not that of a maximum, towards the higher side.
+fn uphill(at: f64, [slope, bend]: [f64; 2], (low, high): (f64, f64)) -> f64 {
+    let newton = if bend < 0.0 { at - slope / bend } else { at + (0.2 * (high - low)).copysign(slope) };
+    newton.clamp(low, high)
 }
 
 fn angle_at(angle_rad: &[f64], u: f64) -> f64 {

@@ -18,8 +18,16 @@ pub(super) const TRAVEL_WEIGHT: f64 = 6.0;
 /// Largest change of a rotation in one step, rad.
 const LARGEST_TURN: f64 = 0.4;
 const MOST_ITERATIONS: usize = 6;
-/// Walks with ever shorter steps before the general path is asked.
-const ATTEMPTS: usize = 3;
+/// Intervals longer than this many times the half of a neighbour are halved with it.
+const GRADE: f64 = 2.5;
+/// Times that states are added where the interpolation asks for them.
+const MOST_ROUNDS: usize = 6;
+/// How close iterations come to states that are added, relative to the others.
+const CLOSER: f64 = 0.03;
+/// Part of the error allowed once states have been added.
+const SHARP: f64 = 0.5;
+/// Part of that from which a state is refined if others are.
+const NEARLY_ROUGH: f64 = 0.25;
 const MOST_STEPS: usize = 400;
 /// Largest start of the last iteration per accuracy of the force, as the tangent is right to that only.
 const TANGENT: f64 = 2.0;
@@ -44,6 +52,20 @@ pub(super) struct Task<'a> {
     pub(super) accuracy: f64,
 }
 
+/// Intervals on both sides of the rough states, and those that would be much longer than their neighbours, by their first states.
+fn halved(controls: &[f64], rough: &[usize]) -> Vec<usize> {
+    let lengths: Vec<f64> = controls.windows(2).map(|w| w[1] - w[0]).collect();
+    let mut marked = vec![false; lengths.len()];
+    rough.iter().flat_map(|j| [j - 1, *j]).for_each(|i| marked[i] = true);
+    loop {
+        let beside = |i: usize| [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter(|n| marked.get(*n) == Some(&true));
+        let long = |i: &usize| !marked[*i] && beside(*i).any(|n| lengths[*i] > GRADE * 0.5 * lengths[n]);
+        let Some(next) = (0..lengths.len()).find(long) else { break };
+        marked[next] = true;
+    }
+    (0..lengths.len()).filter(|i| marked[*i]).collect()
+}
+
 impl Task<'_> {
     /// The last station, dimensionless.
     fn end(&self) -> f64 {
@@ -54,6 +76,11 @@ impl Task<'_> {
     /// together, but one iteration does for each.
     pub(super) fn tight(&self) -> bool {
         self.accuracy < TIGHT
+    }
+
+    /// Largest start of the last iteration, which squares the distance.
+    fn accepted(&self) -> f64 {
+        if self.tight() { 0.2 * self.accuracy.sqrt() } else { TANGENT * self.accuracy }
     }
 
     /// States used to interpolate the force.
@@ -83,12 +110,16 @@ pub(super) struct Walker<const M: usize, const Q: usize, const E: usize> {
     pub(super) tables: Tables<M, Q, E>,
     sampling: Sampling<M, E>,
     pub(super) net: Net,
+    /// Whether no beam may be softened.
+    exact: bool,
     pub(super) beams: Vec<Beams<Q>>,
     stress: Vec<StressModel>,
     pub(super) condensed: Vec<Condensed<M, Q>>,
     /// The first `controls.len()` are states of this walk.
     pub(super) nodes: Vec<Node<M, E>>,
     pub(super) controls: Vec<f64>,
+    /// States around which the interpolation is not good enough.
+    rough: Vec<usize>,
     pub(super) hermite: Hermite,
     stress_hermite: Hermite,
     pub(super) x: Vec<f64>,
@@ -102,6 +133,8 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
             tables: Tables::new(),
             sampling: Sampling::new(),
             net: Net::default(),
+            exact: false,
+            rough: Vec::new(),
             beams: Vec::new(),
             stress: Vec::new(),
             condensed: Vec::new(),
@@ -127,23 +160,25 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
         if !self.prepare(task) {
             return Err(GiveUp::Unresolved);
         }
-        // As many states as the interpolation asks for on curves like the paper's, and more where that is not enough.
+        // As many states as the interpolation asks for on curves like the paper's; more between those where that is not enough.
         let intervals = if task.tight() { 17.0 } else { 6.5 };
         let reference = if task.tight() { 1e-8 } else { 1e-3 };
-        let mut spacing = task.end() / (intervals * forcewright_base::maths::powf(reference / task.accuracy, 0.09));
-        let (mut instability, mut interpolation, mut largest) = (0, [f64::INFINITY; 2], [0.0; 2]);
-        for _ in 0..ATTEMPTS {
-            self.walk(task, spacing, counters)?;
-            instability = self.net.instability;
+        let spacing = task.end() / (intervals * forcewright_base::maths::powf(reference / task.accuracy, 0.09));
+        self.walk(task, spacing, counters)?;
+        let instability = self.net.instability;
+        let (mut interpolation, mut largest) = ([f64::INFINITY; 2], [f64::MIN_POSITIVE; 2]);
+        for round in 0..=MOST_ROUNDS {
             self.emit(task, out);
             let peak = |values: &[f64]| values.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
             let force = self.nodes[..self.controls.len()].iter().fold(f64::MIN_POSITIVE, |m, n| m.max(n.force.abs()));
             largest = [force, peak(&out.stress_pa)];
-            interpolation = self.interpolation_error(task);
-            if interpolation[0] <= task.accuracy * largest[0] && interpolation[1] <= STRESS_RATIO * task.accuracy * largest[1] {
+            // Curves with sharp turns deceive the estimate a little.
+            let part = if round == 0 { 1.0 } else { SHARP };
+            let allowed = [part * task.accuracy * largest[0], part * STRESS_RATIO * task.accuracy * largest[1]];
+            interpolation = self.interpolation_error(task, allowed);
+            if self.rough.is_empty() || round == MOST_ROUNDS || !self.refine(task, counters)? {
                 break;
             }
-            spacing *= 0.6;
         }
         let resolution = match finer {
             Some(finer) => self.resolution_error(task, counters, finer)?,
@@ -174,6 +209,7 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
     /// Constants of all beams at the points of the rule, four to a group; the last group is filled up with quarter circles that nothing
     /// moves. Whether every beam surely reaches from node to node.
     fn prepare_beams(&mut self, task: &Task) -> bool {
+        self.exact = task.tight();
         let model = task.model;
         let groups = model.beams.len().div_ceil(LANES);
         self.beams.resize_with(groups, Beams::default);
@@ -225,14 +261,9 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
         self.x.resize(self.net.unknowns, 0.0);
         self.inner.clear();
         self.inner.resize(self.beams.len(), Unknowns::default());
-        // One iteration squares the distance. The last one starts this close; the prediction is wanted this close.
-        let (accepted, wanted) = if task.tight() {
-            let accepted = 0.2 * task.accuracy.sqrt();
-            (accepted, 0.4 * accepted)
-        } else {
-            let accepted = TANGENT * task.accuracy;
-            (accepted, (0.5 * accepted.sqrt()).min(0.4 * LARGEST_CORRECTION))
-        };
+        // The prediction is wanted this close.
+        let accepted = task.accepted();
+        let wanted = if task.tight() { 0.4 * accepted } else { (0.5 * accepted.sqrt()).min(0.4 * LARGEST_CORRECTION) };
         let predicting = if task.tight() { 2 } else { 3 };
         self.iterate(counters)?;
         self.keep(0.0, projection);
@@ -284,6 +315,28 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
         counters: &mut Counters,
     ) -> Result<Option<f64>, GiveUp> {
         self.predict(target, projection, predicting);
+        let distance = self.correct(accepted, counters)?;
+        if distance.is_some() {
+            self.keep(target, projection);
+        }
+        Ok(distance)
+    }
+
+    /// Brings the states into the order of their controls; buffers stay where they are.
+    fn sort(&mut self) {
+        // Those added are few and at the end: insertion.
+        for last in 1..self.controls.len() {
+            let mut at = last;
+            while at > 0 && self.controls[at] < self.controls[at - 1] {
+                self.controls.swap(at, at - 1);
+                self.nodes.swap(at, at - 1);
+                at -= 1;
+            }
+        }
+    }
+
+    /// Newton iterations from a prediction; the distance of it from the state, or `None` if it was too far away.
+    fn correct(&mut self, accepted: f64, counters: &mut Counters) -> Result<Option<f64>, GiveUp> {
         let mut first = None;
         for _ in 0..MOST_ITERATIONS {
             self.iterate(counters)?;
@@ -293,11 +346,34 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
                 return Ok(None);
             }
             if distance <= accepted {
-                self.keep(target, projection);
                 return Ok(Some(start));
             }
         }
         Ok(None)
+    }
+
+    /// Adds a state half way to each neighbour of the rough ones. Whether there was room for them.
+    fn refine(&mut self, task: &Task, counters: &mut Counters) -> Result<bool, GiveUp> {
+        let (count, projection) = (self.controls.len(), task.model.projection);
+        let old = self.controls.clone();
+        let halves = halved(&old, &self.rough);
+        if count + halves.len() > MOST_STEPS {
+            return Ok(false);
+        }
+        for before in halves {
+            let target = 0.5 * (old[before] + old[before + 1]);
+            self.hermite.reset(task.tight());
+            self.hermite.around(&old, before, task.states());
+            self.interpolate(target, projection);
+            // Slopes of states close together must fit each other.
+            if self.correct(CLOSER * task.accepted(), counters)?.is_none() {
+                return Err(GiveUp::Unsafe);
+            }
+            counters.steps += 1;
+            self.keep(target, projection);
+        }
+        self.sort();
+        Ok(true)
     }
 
     /// Hermite extrapolation from the last states.
@@ -349,7 +425,7 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
         for (g, beams) in self.beams.iter().enumerate() {
             let (ends, apart) = self.net.ends(g, &self.x);
             self.inner[g].ends = ends;
-            linearise(&self.tables, beams, &self.inner[g], apart, &mut self.condensed[g]).map_err(|_| GiveUp::Unsafe)?;
+            linearise(&self.tables, beams, &self.inner[g], (apart, self.exact), &mut self.condensed[g]).map_err(|_| GiveUp::Unsafe)?;
             self.net.add(g, &self.condensed[g]);
         }
         self.net.solve().map_err(|_| GiveUp::Unsafe)
@@ -426,13 +502,16 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
     }
 
     /// Estimated errors of force and stress between the states: each state is left out and predicted from those around it, which is a
-    /// much harder task. In Pa the second, the first dimensionless.
-    fn interpolation_error(&mut self, task: &Task) -> [f64; 2] {
+    /// much harder task. In Pa the second, the first dimensionless. If one of them is
+    /// not `allowed` somewhere, the states there are rough.
+    fn interpolation_error(&mut self, task: &Task, allowed: [f64; 2]) -> [f64; 2] {
         let count = self.controls.len();
+        self.rough.clear();
         if count < 4 {
+            self.rough.extend(1..count.saturating_sub(1));
             return if task.end() > 0.0 { [f64::INFINITY; 2] } else { [0.0; 2] };
         }
-        let mut worst = [0.0_f64; 2];
+        let (mut worst, mut roughest) = ([0.0_f64; 2], Vec::with_capacity(count));
         let left_out = if task.tight() { LEFT_OUT_TIGHT } else { LEFT_OUT };
         let (states, stress_states) = (task.states(), task.stress_states());
         self.hermite.reset(task.tight());
@@ -445,7 +524,7 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
             for (i, [value, by]) in self.hermite.weights() {
                 force += value * self.nodes[i].force + by * self.nodes[i].slope;
             }
-            worst[0] = worst[0].max(left_out * force.abs());
+            let mut here = [left_out * force.abs(), 0.0];
             let hermite = if states == stress_states {
                 &self.hermite
             } else {
@@ -460,9 +539,16 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
                         let from = &self.nodes[i].groups[g].survey;
                         slope += from.slope[place] * value + from.slope_by[place] * by;
                     }
-                    worst[1] = worst[1].max(left_out * largest_lane((slope * stress.bending).abs()));
+                    here[1] = here[1].max(left_out * largest_lane((slope * stress.bending).abs()));
                 }
             }
+            roughest.push((here[0] / allowed[0]).max(here[1] / allowed[1]));
+            worst = [worst[0].max(here[0]), worst[1].max(here[1])];
+        }
+        // Once there is work to do, what is nearly too rough is done with it. What is not a number is rough.
+        let above = |part: f64| (1..count - 1).zip(&roughest).filter(move |(_, r)| **r > part || r.is_nan()).map(|(j, _)| j);
+        if above(1.0).next().is_some() {
+            self.rough.extend(above(NEARLY_ROUGH));
         }
         worst
     }

@@ -145,10 +145,19 @@ pub(crate) const ENDS: [(usize, usize); 4] = [(0, 2), (1, 2), (2, 3), (3, 4)];
 
 /// Nodes moved by up to 3 mm, bends by up to 1.5 rad.
 pub(crate) fn random_network(random: &mut SplitMix, nodes_mm: f64, bend: f64) -> Result<Network, ShapeError> {
+    bent_at_random(random, nodes_mm, |random, i, k| TABLE3_SHAPES[i][k] + random.around(bend))
+}
+
+/// The half mechanism with its nodes moved at random by up to some millimetres, and bends `k` of beams `i` as given.
+pub(crate) fn bent_at_random(
+    random: &mut SplitMix,
+    nodes_mm: f64,
+    bend: impl Fn(&mut SplitMix, usize, usize) -> f64,
+) -> Result<Network, ShapeError> {
     let nodes = TABLE3_NODES.map(|p| p.map(|x| x * 1e-2 + random.around(nodes_mm * 1e-3)));
     let mut shapes = Vec::new();
-    for (i, c) in TABLE3_SHAPES.iter().enumerate() {
-        let bends = [c[1] + random.around(bend), c[2] + random.around(bend)];
+    for i in 0..TABLE3_SHAPES.len() {
+        let bends = [1, 2].map(|k| bend(random, i, k));
         shapes.push(Shape::from_chord(add(nodes[ENDS[i].1], nodes[ENDS[i].0], -1.0), &bends)?);
     }
     Ok(half_mechanism(nodes, shapes.try_into().expect("four"), POM))

@@ -1,7 +1,7 @@
 //! The largest stress of four designs: surveyed at the states, interpolated between them.
 //!
-//! Of every beam the stress at both ends is interpolated, and that at maxima inside, of which there is at most one of each sign that
-//! matters. Where such a maximum begins or ends between two states, it is looked for at each station.
+//! Of every beam the stress at both ends is interpolated, and that at the highest maximum inside of each sign. Where such a maximum
+//! begins or ends between two states, is not the same at both, or moves unevenly, it is looked for at each station.
 
 #![allow(clippy::needless_range_loop, reason = "sums over modes are read by their indices")]
 
@@ -11,7 +11,7 @@ use forcewright_base::quadrature::legendre_values;
 use crate::element::root_of;
 use crate::fast::kernel::Unknowns;
 use crate::fast::lanes::{LANES, Lane};
-use crate::fast::stress::{OneBeam, StressModel};
+use crate::fast::stress::{MODES, Maximum, OneBeam, StressModel};
 
 /// A beam of four designs at one state, with derivatives by the part of the travel.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +42,16 @@ struct Inside {
     stress: Lane,
     by: Lane,
     place: Lane,
+    place_by: Lane,
+    /// The part of the second derivative of the stress that is due to the motion of its place.
+    drift: Lane,
+}
+
+impl Inside {
+    fn set(&mut self, lane: usize, one: &Maximum) {
+        (self.stress.0[lane], self.by.0[lane]) = (one.stress, one.by);
+        (self.place.0[lane], self.place_by.0[lane], self.drift.0[lane]) = (one.place, one.place_by, one.drift);
+    }
 }
 
 impl<const M: usize, const E: usize> Default for BeamState<M, E> {
@@ -55,11 +65,17 @@ impl<const M: usize, const E: usize> Default for BeamState<M, E> {
 const FAR: f64 = 0.6;
 /// A sample is at least this part of the maximum next to it.
 const SAMPLED: f64 = 0.9;
-/// A maximum that is known at one of two states only is looked for between them if it is at least this part of the largest stress: it
-/// may have been larger before it was there.
-const CLOSE: f64 = 0.6;
-/// Maxima of two states are the same if they are no further apart than this part of the beam.
-const SAME: f64 = 0.15;
+/// A maximum that is looked for between two states matters if it is at least this part of the largest stress at one of them, where it is
+/// known at one only: it may have been larger before it was there.
+const CLOSE: f64 = 0.7;
+/// The same by its interpolated value, where it is known at both.
+const CLOSE_BETWEEN: f64 = 0.95;
+/// Maxima of two states are the same if the way from one to the other is the mean of both rates up to this part of the beam.
+const SAME: f64 = 0.05;
+/// Largest change from state to state, as part of the stress and per accuracy of the force, of what the motion of the maximum adds to the
+/// second differences of its stress, so that the interpolation is as good as that of the stress at the ends; from the random designs of
+/// the tests.
+const UNEVEN: f64 = 200.0;
 
 /// Slopes of the modes at Chebyshev points, of which the first half is kept: they are even or odd about the middle.
 #[derive(Debug)]
@@ -226,15 +242,41 @@ impl<const M: usize, const E: usize> Sampling<M, E> {
             let (bend, half) = (left - 2.0 * here + right, 0.5 * (high - low));
             let inner = i > 0 && i < last && bend < 0.0;
             let start = if inner { self.place[i] + 0.5 * half * (left - right) / bend } else { self.place[i] };
-            let [stress, slope, bend, positive] = one.stress_with_side(start);
-            let step = if bend < 0.0 { (-slope / bend).clamp(low - start, high - start) } else { 0.0 };
-            let value = stress + 0.5 * slope * step;
-            let record = &mut beam.survey.inside[usize::from(positive < 0.0)];
-            if value >= least && value > record.stress.0[lane] {
-                let u = start + step;
-                (record.stress.0[lane], record.by.0[lane], record.place.0[lane]) = (value, one.stress_by(&by, u), u);
+            let (u, height, side) = one.summit(start, (low, high));
+            let record = &mut beam.survey.inside[usize::from(side < 0.0)];
+            if height >= least && height > record.stress.0[lane] {
+                record.set(lane, &one.maximum_by(&by, u));
             }
         }
+    }
+
+    /// The largest stress inside a beam, or less if that is below `floor`.
+    fn largest_inside(&self, beam: &OneBeam<M, E>, tolerance: f64, floor: f64) -> f64 {
+        let last = self.place.len() - 1;
+        let mut samples = [0.0; MODES + 4];
+        for (i, row) in self.slope.iter().enumerate() {
+            let (mut even, mut odd) = (beam.ends[1] - beam.ends[0], 0.0);
+            for k in 0..M + E {
+                let part = if k < M { beam.bubbles[k] * row.0[k].0[0] } else { beam.beyond[k - M] * row.1[k - M].0[0] };
+                if k % 2 == 0 {
+                    odd += part;
+                } else {
+                    even += part;
+                }
+            }
+            (samples[i], samples[last - i]) = ((even + odd).abs(), (even - odd).abs());
+        }
+        let axial = beam.factors[1] * (beam.force[0].abs() + beam.force[1].abs());
+        let mut best = 0.0_f64;
+        for i in 0..=last {
+            let (before, after) = (i.saturating_sub(1), (i + 1).min(last));
+            let highest = samples[i] >= samples[before] && samples[i] >= samples[after];
+            if highest && samples[i] * beam.factors[0] + axial > SAMPLED * floor {
+                let found = beam.maximum(self.place[i], (self.place[before], self.place[after]), tolerance, floor.max(best));
+                best = best.max(found);
+            }
+        }
+        best
     }
 }
 
@@ -262,8 +304,28 @@ struct Passage {
     lane: usize,
     /// Stress and derivative at both states, where it is known at both.
     known: Option<[[f64; 2]; 2]>,
-    /// The larger of the stresses, and where that is.
-    largest: [f64; 2],
+    /// Whether these tell the stress between the states.
+    smooth: bool,
+    /// The larger of the stresses.
+    largest: f64,
+}
+
+impl Passage {
+    /// Of maxima of the same sign at two states, of which one may be missing.
+    fn new((beam, lane): (usize, usize), states: [&Inside; 2], (length, accuracy): (f64, f64)) -> Self {
+        let of = |pick: fn(&Inside) -> Lane| states.map(|s| pick(s).0[lane]);
+        let (stress, by) = (of(|s| s.stress), of(|s| s.by));
+        let largest = stress[0].max(stress[1]);
+        if !(stress[0] > 0.0 && stress[1] > 0.0) {
+            return Self { beam, lane, known: None, smooth: false, largest };
+        }
+        let (place, rate, drift) = (of(|s| s.place), of(|s| s.place_by), of(|s| s.drift));
+        let astray = place[1] - place[0] - 0.5 * length * (rate[0] + rate[1]);
+        let uneven = length * length * (drift[1] - drift[0]);
+        // Written so that NaN is not smooth.
+        let smooth = astray.abs() < SAME && uneven.abs() < UNEVEN * accuracy * largest;
+        Self { beam, lane, known: Some([[stress[0], by[0]], [stress[1], by[1]]]), smooth, largest }
+    }
 }
 
 /// Two neighbouring states.
@@ -273,19 +335,14 @@ pub(super) struct Interval {
 }
 
 impl Interval {
-    /// Notes the maxima inside beams.
-    pub(super) fn enter<const M: usize, const E: usize>(&mut self, states: [&[BeamState<M, E>]; 2]) {
+    /// Notes the maxima inside beams. The states are a `length` apart, and the force is wanted to an `accuracy`.
+    pub(super) fn enter<const M: usize, const E: usize>(&mut self, states: [&[BeamState<M, E>]; 2], (length, accuracy): (f64, f64)) {
         self.passages.clear();
         for (beam, (left, right)) in states[0].iter().zip(states[1]).enumerate() {
             for (left, right) in left.survey.inside.iter().zip(&right.survey.inside) {
                 for lane in 0..LANES {
-                    let [from, to] = [left, right].map(|s| s.stress.0[lane]);
-                    if from > 0.0 || to > 0.0 {
-                        let places = [left, right].map(|s| s.place.0[lane]);
-                        let same = from > 0.0 && to > 0.0 && (places[0] - places[1]).abs() < SAME;
-                        let known = same.then_some([[from, left.by.0[lane]], [to, right.by.0[lane]]]);
-                        let largest = if from > to { [from, places[0]] } else { [to, places[1]] };
-                        self.passages.push(Passage { beam, lane, known, largest });
+                    if left.stress.0[lane] > 0.0 || right.stress.0[lane] > 0.0 {
+                        self.passages.push(Passage::new((beam, lane), [left, right], (length, accuracy)));
                     }
                 }
             }
@@ -316,6 +373,7 @@ impl<const M: usize, const E: usize> Between<'_, M, E> {
     /// The largest stress, Pa, and its beam.
     pub(super) fn peak(
         &self,
+        sampling: &Sampling<M, E>,
         interval: &Interval,
         stress: &[StressModel],
         tolerance: f64,
@@ -336,18 +394,21 @@ impl<const M: usize, const E: usize> Between<'_, M, E> {
         }
         for p in &interval.passages {
             let floor = best.0[p.lane];
-            let value = if let Some([[v, dv], [w, dw]]) = p.known {
+            let (mut value, mut close) = (p.largest, CLOSE);
+            if let Some([[v, dv], [w, dw]]) = p.known {
                 let [[a, b], [c, d]] = self.weights;
-                v * a + dv * b + w * c + dw * d
-            } else if p.largest[0] > CLOSE * floor {
+                (value, close) = (v * a + dv * b + w * c + dw * d, CLOSE_BETWEEN);
+            }
+            if !p.smooth {
+                if value <= close * floor {
+                    continue;
+                }
                 let mut angles = Vec::new();
                 if stress[p.beam].soft {
                     angle_rad(p.beam, p.lane, &mut angles);
                 }
-                self.look(&stress[p.beam], p, tolerance, floor, &angles)
-            } else {
-                continue;
-            };
+                value = sampling.largest_inside(&self.one(&stress[p.beam], p, &angles), tolerance, floor);
+            }
             if value > floor {
                 (best.0[p.lane], which.0[p.lane]) = (value, p.beam as f64);
             }
@@ -355,9 +416,9 @@ impl<const M: usize, const E: usize> Between<'_, M, E> {
         (best, which)
     }
 
-    /// The maximum next to a place in the interpolated state of a beam.
-    fn look(&self, own: &StressModel, passage: &Passage, tolerance: f64, floor: f64, angle_rad: &[f64]) -> f64 {
-        let (lane, start) = (passage.lane, passage.largest[1]);
+    /// The interpolated state of a beam.
+    fn one<'a>(&self, own: &StressModel, passage: &Passage, angle_rad: &'a [f64]) -> OneBeam<'a, M, E> {
+        let lane = passage.lane;
         let mut one = one_beam(own, (&Unknowns::<M>::default(), &[Lane::ZERO; E]), lane, angle_rad);
         for (state, [a, b]) in self.states.iter().zip(self.weights) {
             let s = &state[passage.beam];
@@ -371,7 +432,6 @@ impl<const M: usize, const E: usize> Between<'_, M, E> {
             mix(&mut one.bubbles, &s.at.bubbles, &s.by.bubbles);
             mix(&mut one.beyond, &s.beyond, &s.beyond_by);
         }
-        let (low, high) = ((start - SAME).max(0.0), (start + SAME).min(1.0));
-        one.maximum(start, (low, high), tolerance, floor)
+        one
     }
 }

@@ -236,13 +236,13 @@ impl<const M: usize, const Q: usize, const E: usize> LaneWalker<M, Q, E> {
         for station in &task.schedule.stations {
             let states = station.around.map(|i| &self.states[i].beams[..]);
             if here != Some(station.around) {
-                interval.enter(states);
+                interval.enter(states, (task.schedule.steps[station.around[0]].length, task.accuracy));
                 here = Some(station.around);
             }
             out.force_n.push(self.force(&station.force) * constants.force_n);
             out.stiffness_n_per_m.push(self.force(&station.slope) * constants.force_n * (1.0 / task.travel_m));
             let between = Between { states, weights: station.stress };
-            let (stress, beam) = between.peak(interval, &constants.stress, task.accuracy, angles);
+            let (stress, beam) = between.peak(&self.sampling, interval, &constants.stress, task.accuracy, angles);
             out.stress_pa.push(stress);
             out.stress_beam.push(beam);
         }
