@@ -133,8 +133,20 @@ pub trait Evaluator: Send + Sync {
     /// [`Failure`] where the design cannot be built or its path does not reach the end.
     fn evaluate(&self, x: &[f64], derivatives: bool, out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure>;
 
-    /// The measures of values that were evaluated, or extrapolated, at `x`; `None` in `out` where a measure has no value there.
-    fn measure(&self, x: &[f64], values: &[f64], out: &mut Vec<Option<f64>>);
+    /// Derivatives of the values marked in `rows` at `x`, where `out` holds the values; the rows of the others are zero. A family that
+    /// keeps what it computed for the values in the workspace overrides it.
+    ///
+    /// # Errors
+    /// As [`Evaluator::evaluate`].
+    fn differentiate(&self, x: &[f64], rows: &[bool], out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure> {
+        self.evaluate(x, true, out, workspace)?;
+        let columns = self.variables().len().max(1);
+        out.jacobian.chunks_exact_mut(columns).zip(rows).filter(|(_, wanted)| !**wanted).for_each(|(row, _)| row.fill(0.0));
+        Ok(())
+    }
+
+    /// The measures of values that were evaluated, or extrapolated, at `x`; not a number in `out` where a measure has no value there.
+    fn measure(&self, x: &[f64], values: &[f64], out: &mut Vec<f64>, workspace: &mut Workspace);
 
     /// Values of many designs, `x` one after the other, handed to `sink` in their order. Families that compute several at once override it;
     /// the numbers are the same up to their accuracy, and each is a pure function of its own `x`.

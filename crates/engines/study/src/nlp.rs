@@ -31,7 +31,7 @@
 //!
 //! # Method
 //!
-//! Line-search SQP on the ℓ₁ merit function: J. Nocedal and S. J. Wright, "Numerical Optimization", 2nd ed., Springer 2006
+//! SQP with a trust region on the ℓ₁ merit function: J. Nocedal and S. J. Wright, "Numerical Optimization", 2nd ed., Springer 2006
 //! (`nocedal2006`), chapter 18; S.-P. Han 1977 (`han1977`); M. J. D. Powell 1978 (`powell1978`).
 //!
 //! - *Scaling*: variables by their range, objective and constraints by their gradients at the start, so that units do not matter.
@@ -41,8 +41,11 @@
 //!   (`goulart2024`) on the rows near their bounds and those that its answer violates, then taken to working precision by the
 //!   equations of the active set it points at. Hence optimality is reached to 1e-10 and better although an interior-point method
 //!   alone would not give it, and near the end a programme costs one small linear system.
-//! - *Globalisation*: backtracking on the merit function, whose penalties follow the multipliers; where the whole step fails a
-//!   correction of second order is tried first (N. Maratos's effect; `nocedal2006`, sections 15.5, 15.6 and 18.3). A filter (R. Fletcher and
+//! - *Globalisation*: a step is taken if the merit function, whose penalties follow the multipliers, falls below the worst of the last few
+//!   points (L. Grippo, F. Lampariello and S. Lucidi 1986). Where the whole step fails a correction of second order is tried first
+//!   (N. Maratos's effect; `nocedal2006`, sections 15.5, 15.6 and 18.3), then the programme is solved again within a shorter reach: with
+//!   many kinks, as in a minimax problem, the best short step is not a part of the best long one. The first reach is the scale of the
+//!   variables, for no linearisation is to be believed farther. A filter (R. Fletcher and
 //!   S. Leyffer 2002, `fletcher2002`) would need a restoration phase of its own beside it; in elastic mode the merit function is the
 //!   objective of the programme itself, so one mechanism serves both.
 //! - *Contradictory linearisations*: elastic mode, an ℓ₁ price on violation that is raised until the step does a fair part of what can be
@@ -50,6 +53,8 @@
 //!   the search comes back the problem is said to be infeasible there.
 //! - *Rejected points* shorten the step, and for some iterations a wall stands across it so that the iterates slide along the edge of the
 //!   region rather than jam at it.
+//! - *The end*: the conditions of optimality hold and the programme predicts no gain worth the name beside the objective. The second
+//!   matters where the objective is far steeper at the start, which scales it, than at the end.
 //!
 //! Everything is deterministic: no clock, no threads, no random numbers.
 
@@ -60,9 +65,11 @@ mod kkt;
 mod merit;
 mod model;
 mod outcome;
+mod patience;
 mod problem;
 mod qp;
 mod sqp;
+mod subproblem;
 #[cfg(test)]
 mod tests;
 mod walls;

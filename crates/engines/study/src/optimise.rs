@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use crate::evaluator::{Evaluation, Evaluator};
+use crate::evaluator::{Evaluator, Variable};
 use crate::nlp::{self, Stop};
 use crate::posing::{Posing, Source};
 use crate::sampling::Sobol;
-use crate::task::{Goal, Task};
+use crate::task::Task;
 
 /// Two runs lie in the same basin if no variable differs by more than this part of its range.
 const SAME: f64 = 0.02;
@@ -15,26 +15,61 @@ const IDLE: f64 = 1e-6;
 
 /// Tolerance, least gain and most iterations of steps that lead to the last one.
 const ON_THE_WAY: f64 = 1e-2;
-const MOST_ON_THE_WAY: usize = 40;
+const MOST_ON_THE_WAY: usize = 20;
 
 /// What a search is asked for.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Number of starts: the first from the design, the others spread over the ranges by a scrambled Sobol sequence.
+    /// Number of starts: the first from the design, the others spread over the ranges by a scrambled Sobol sequence. With
+    /// [`Self::more_starts`] it may be 0.
     pub starts: usize,
+    /// Starts after those, SI, each one value per variable; a value beyond its range starts at its end.
+    pub more_starts: Vec<Vec<f64>>,
     /// Seed of the starts after the first.
     pub seed: u64,
-    /// How far inside its limits the design is kept, relative to each limit.
-    pub margin: f64,
+    /// How far inside its limits the design is kept.
+    pub reserve: Reserve,
     /// Of the optimiser.
     pub nlp: nlp::Settings,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        // A design is made to four digits, its curve computed to five.
-        let nlp = nlp::Settings { tolerance: 1e-5, feasibility: 1e-5, iteration_limit: 200, least_gain: 1e-5, ..nlp::Settings::default() };
-        Self { starts: 1, seed: 1, margin: 0.0, nlp }
+        // A design is made to four digits.
+        let nlp = nlp::Settings { tolerance: 1e-5, feasibility: 1e-5, iteration_limit: 200, least_gain: 1e-4, ..nlp::Settings::default() };
+        Self { starts: 1, more_starts: Vec::new(), seed: 1, reserve: Reserve::default(), nlp }
+    }
+}
+
+/// How far inside its limits and bands a design is kept.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reserve {
+    /// From every limit, relative to it.
+    pub margin: f64,
+    /// Beside that, per value, from its limits, SI; empty: nothing.
+    pub limits: Vec<f64>,
+    /// Per value, from the edges of its bands, relative to their levels; empty: nothing.
+    pub bands: Vec<f64>,
+}
+
+impl Reserve {
+    pub(crate) fn of_limit(&self, value: usize) -> f64 {
+        self.limits.get(value).copied().unwrap_or(0.0)
+    }
+
+    pub(crate) fn of_band(&self, value: usize) -> f64 {
+        self.bands.get(value).copied().unwrap_or(0.0)
+    }
+
+    /// Whether no distance from a limit differs from that of another reserve by more than this part of the largest from that limit, nor
+    /// any from a band.
+    pub fn rests(&self, other: &Self, task: &Task, part: f64) -> bool {
+        let near = |own: &dyn Fn(usize) -> f64, other: &dyn Fn(usize) -> f64, values: std::ops::Range<usize>| {
+            let most = values.clone().fold(0.0_f64, |m, at| m.max(own(at).abs()));
+            values.into_iter().all(|at| (own(at) - other(at)).abs() <= part * most)
+        };
+        let limits = task.limits.iter().all(|l| near(&|at| self.of_limit(at), &|at| other.of_limit(at), l.values.clone()));
+        limits && near(&|at| self.of_band(at), &|at| other.of_band(at), 0..self.bands.len().max(other.bands.len()))
     }
 }
 
@@ -137,7 +172,7 @@ pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bo
         }
         on
     };
-    let starts = starts(task.evaluator.as_ref(), settings);
+    let starts = all_starts(task.evaluator.as_ref(), settings);
     let run = |(index, start)| {
         // Starts that have not begun when it is interrupted never do; the first always does, so that there is a best.
         let begins = index == 0 || !interrupted.load(std::sync::atomic::Ordering::Relaxed);
@@ -166,22 +201,30 @@ pub fn again(task: &Task, settings: &Settings, run: &Run, watch: &(dyn Fn(&Progr
     next
 }
 
+/// The starts of the settings, in order; the design itself if there are none.
+fn all_starts(evaluator: &dyn Evaluator, settings: &Settings) -> Vec<Vec<f64>> {
+    let variables = evaluator.variables();
+    let more = settings.more_starts.iter().filter(|x| x.len() == variables.len());
+    let more = more.map(|x| x.iter().zip(variables).map(|(x, v)| x.max(v.lower).min(v.upper)).collect());
+    let own = if settings.starts == 0 { Vec::new() } else { starts(evaluator, settings) };
+    let all: Vec<Vec<f64>> = own.into_iter().chain(more).collect();
+    if all.is_empty() { starts(evaluator, settings) } else { all }
+}
+
 /// The design itself, and points spread over the ranges that are finite.
 fn starts(evaluator: &dyn Evaluator, settings: &Settings) -> Vec<Vec<f64>> {
     let variables = evaluator.variables();
     let nominal: Vec<f64> = variables.iter().map(|v| v.nominal).collect();
     let mut starts = vec![nominal];
-    let spread = |v: &crate::evaluator::Variable| v.lower.is_finite() && v.upper.is_finite();
+    let spread = |v: &Variable| v.lower.is_finite() && v.upper.is_finite();
     let dimensions = variables.iter().filter(|v| spread(v)).count();
     let Ok(sobol) = Sobol::scrambled(dimensions.max(1), settings.seed) else { return starts };
     let mut point = vec![0.0; dimensions.max(1)];
     for index in 1..settings.starts.max(1) {
         sobol.point(index as u64, &mut point);
         let mut parts = point.iter();
-        let x = variables.iter().map(|v| match parts.next().filter(|_| spread(v)) {
-            Some(part) => v.lower + part * (v.upper - v.lower),
-            None => v.nominal,
-        });
+        let mut part = |v: &Variable| if spread(v) { parts.next() } else { None };
+        let x = variables.iter().map(|v| part(v).map_or(v.nominal, |part| v.lower + part * (v.upper - v.lower)));
         starts.push(x.collect());
     }
     starts
@@ -201,7 +244,7 @@ fn run_steps(task: &Task, settings: &Settings, (index, start, first): (usize, Ve
         active: Vec::new(),
     };
     for (number, step) in task.steps.iter().enumerate().skip(first) {
-        let Some(mut posing) = Posing::new(task, step, &run.x, settings.margin) else { break };
+        let Some(mut posing) = Posing::new(task, step, &run.x, &settings.reserve) else { break };
         let start = posing.start.clone();
         // Limits come with their scales.
         let mut nlp = nlp::Settings { constraint_scales: vec![1.0; posing.sources.len()], ..settings.nlp.clone() };
@@ -228,6 +271,11 @@ fn run_steps(task: &Task, settings: &Settings, (index, start, first): (usize, Ve
         run.active = active(task, &posing, &solution);
         // A step on the way that fails leaves a start as good as any.
         if solution.stop == Stop::Interrupted {
+            // Runs are compared by the goal of the last step.
+            if let Some(last) = task.steps.last().filter(|_| number + 1 < task.steps.len()) {
+                let standing = Posing::new(task, last, &run.x, &settings.reserve).and_then(|mut p| p.standing());
+                (run.goal, run.violation) = standing.unwrap_or((f64::NAN, f64::INFINITY));
+            }
             break;
         }
     }
@@ -293,30 +341,6 @@ fn basins(evaluator: &dyn Evaluator, runs: &[Run], mut feasible: Vec<usize>) -> 
 impl Task {
     /// The goal at a design, in its own unit: what [`Run::goal`] is at the end of a run. `None` if it has no values.
     pub fn goal_at(&self, x: &[f64]) -> Option<f64> {
-        let step = self.steps.last()?;
-        let mut workspace = self.evaluator.workspace();
-        let mut evaluation = Evaluation::default();
-        self.evaluator.evaluate(x, false, &mut evaluation, &mut workspace).ok()?;
-        let values = &evaluation.values;
-        Some(match &step.goal {
-            Goal::Variables(weights) => weights.iter().map(|(i, w)| w * x[*i]).sum(),
-            Goal::Values(weights) => weights.iter().map(|(i, w)| w * values[*i]).sum(),
-            Goal::Largest { values: range, scale } => values[range.clone()].iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v)) / scale,
-            Goal::Squares { values: range, targets, scale } => {
-                values[range.clone()].iter().zip(targets).map(|(v, t)| (v - t) / scale).map(|d| d * d).sum()
-            }
-            Goal::HalfWidth => {
-                let open = step.bands.iter().filter(|b| b.half_width.is_none());
-                let width = |band: &crate::task::Band| {
-                    let own = &values[band.values.clone()];
-                    let (high, low) = own.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(h, l), v| (h.max(*v), l.min(*v)));
-                    match band.level {
-                        Some(level) => (high / level - 1.0).abs().max((low / level - 1.0).abs()),
-                        None => (high - low) / (high + low).abs(),
-                    }
-                };
-                open.map(width).fold(0.0, f64::max)
-            }
-        })
+        Some(Posing::new(self, self.steps.last()?, x, &Reserve::default())?.standing()?.0)
     }
 }

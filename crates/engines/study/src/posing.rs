@@ -6,20 +6,24 @@
 
 use crate::evaluator::{Evaluation, Evaluator, Variable, Workspace};
 use crate::nlp::{Problem, Rejected, Values};
+use crate::optimise::Reserve;
 use crate::task::{Goal, Limit, Step, Task};
 
 /// A level is never taken below this part of its first value: at zero a band says nothing.
 const LEAST_LEVEL: f64 = 1e-3;
 
+/// Values further than this part of their scale inside a limit are not differentiated: a step that would break it fails by the value.
+const NEAR: f64 = 0.3;
+
 /// Where a constraint comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Source {
     /// A limit, by its index, and which of its values.
     Limit(usize, usize),
-    /// Above or below a band, by its index, at one of its values.
-    Band(usize, usize),
-    /// The largest of some values.
-    Largest(usize),
+    /// Above (1) or below (−1) a band, by its index, at one of its values.
+    Band(usize, usize, f64),
+    /// The largest size of some values, above (1) or below (−1) zero.
+    Largest(usize, f64),
 }
 
 /// A step as a problem.
@@ -27,6 +31,7 @@ pub(crate) struct Posing<'a> {
     evaluator: &'a dyn Evaluator,
     limits: &'a [Limit],
     step: &'a Step,
+    reserve: &'a Reserve,
     workspace: Workspace,
     evaluation: Evaluation,
     /// Scale of the levels, SI: their first values.
@@ -38,23 +43,31 @@ pub(crate) struct Posing<'a> {
     pub(crate) sources: Vec<Source>,
     pub(crate) start: Vec<f64>,
     x: Vec<f64>,
-    /// Whether the evaluation is that of `x`, with derivatives.
+    /// Whether the evaluation is that of `x`.
     current: bool,
+    /// Values that are differentiated whether near to their limits or not: of the goal and of bands.
+    always: Vec<bool>,
+    /// Values near to their limits at the last point with derivatives: they may have multipliers there, which the next compares.
+    near: Vec<bool>,
+    /// Values that are differentiated.
+    rows: Vec<bool>,
     /// Designs evaluated.
     pub(crate) evaluations: u64,
 }
 
 impl<'a> Posing<'a> {
-    /// Poses a step at its start `x`, SI, with every limit tightened by `margin` of its scale. `None` if the start has no values.
-    pub(crate) fn new(task: &'a Task, step: &'a Step, x: &[f64], margin: f64) -> Option<Self> {
+    /// Poses a step at its start `x`, SI, some way inside the limits. `None` if the start has no values.
+    pub(crate) fn new(task: &'a Task, step: &'a Step, x: &[f64], reserve: &'a Reserve) -> Option<Self> {
         let evaluator = task.evaluator.as_ref();
         let mut workspace = evaluator.workspace();
         let mut evaluation = Evaluation::default();
-        evaluator.evaluate(x, true, &mut evaluation, &mut workspace).ok()?;
+        evaluator.evaluate(x, false, &mut evaluation, &mut workspace).ok()?;
+        let count = evaluation.values.len();
         let mut posing = Self {
             evaluator,
             limits: &task.limits,
             step,
+            reserve,
             workspace,
             evaluation,
             levels: Vec::new(),
@@ -66,10 +79,14 @@ impl<'a> Posing<'a> {
             start: Vec::new(),
             x: x.to_vec(),
             current: true,
+            always: vec![false; count],
+            near: vec![false; count],
+            rows: Vec::new(),
             evaluations: 1,
         };
         posing.unknowns();
-        posing.constraints(margin);
+        posing.constraints();
+        posing.always();
         Some(posing)
     }
 
@@ -102,9 +119,7 @@ impl<'a> Posing<'a> {
         }
         let top = match &self.step.goal {
             Goal::HalfWidth => worst,
-            Goal::Largest { values, scale } => {
-                self.evaluation.values[values.clone()].iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v)) / scale
-            }
+            Goal::Largest { values, scale } => self.evaluation.values[values.clone()].iter().fold(0.0_f64, |m, v| m.max(v.abs())) / scale,
             _ => return,
         };
         self.lower.push(if matches!(self.step.goal, Goal::HalfWidth) { 0.0 } else { f64::NEG_INFINITY });
@@ -112,15 +127,15 @@ impl<'a> Posing<'a> {
         self.start.push(top);
     }
 
-    fn constraints(&mut self, margin: f64) {
+    fn constraints(&mut self) {
         for (index, limit) in self.limits.iter().enumerate() {
-            // A bound moves inwards by a part of its own size, or of what is a large change where it is zero.
-            let inward = |bound: f64| match bound.abs() {
-                f64::INFINITY => 0.0,
-                0.0 => margin * limit.scale,
-                size => margin * size,
-            };
             for at in limit.values.clone() {
+                // A bound moves inwards by a part of its own size, or of what is a large change where it is zero.
+                let inward = |bound: f64| match bound.abs() {
+                    f64::INFINITY => 0.0,
+                    0.0 => self.reserve.margin * limit.scale + self.reserve.of_limit(at),
+                    size => self.reserve.margin * size + self.reserve.of_limit(at),
+                };
                 self.constraint_lower.push((limit.lower + inward(limit.lower)) / limit.scale);
                 self.constraint_upper.push((limit.upper - inward(limit.upper)) / limit.scale);
                 self.sources.push(Source::Limit(index, at));
@@ -128,20 +143,52 @@ impl<'a> Posing<'a> {
         }
         for (index, band) in self.step.bands.iter().enumerate() {
             for at in band.values.clone() {
-                for above in [true, false] {
-                    self.constraint_lower.push(if above { f64::NEG_INFINITY } else { 0.0 });
-                    self.constraint_upper.push(if above { 0.0 } else { f64::INFINITY });
-                    self.sources.push(Source::Band(index, at));
+                for (side, lower, upper) in [(1.0, f64::NEG_INFINITY, 0.0), (-1.0, 0.0, f64::INFINITY)] {
+                    self.constraint_lower.push(lower);
+                    self.constraint_upper.push(upper);
+                    self.sources.push(Source::Band(index, at, side));
                 }
             }
         }
         if let Goal::Largest { values, .. } = &self.step.goal {
-            for at in values.clone() {
+            for (at, side) in values.clone().flat_map(|at| [(at, 1.0), (at, -1.0)]) {
                 self.constraint_lower.push(f64::NEG_INFINITY);
                 self.constraint_upper.push(0.0);
-                self.sources.push(Source::Largest(at));
+                self.sources.push(Source::Largest(at, side));
             }
         }
+    }
+
+    /// What is differentiated at every point.
+    fn always(&mut self) {
+        for source in &self.sources {
+            if let Source::Band(_, at, _) | Source::Largest(at, _) = source {
+                self.always[*at] = true;
+            }
+        }
+        match &self.step.goal {
+            Goal::Values(weights) => weights.iter().for_each(|(at, _)| self.always[*at] = true),
+            Goal::Squares { values, .. } => self.always[values.clone()].fill(true),
+            Goal::HalfWidth | Goal::Variables(_) | Goal::Largest { .. } => {}
+        }
+    }
+
+    /// Derivatives of what is near to its limit, here or at the last point with derivatives.
+    fn differentiate(&mut self) -> Result<(), Rejected> {
+        let mut near = vec![false; self.always.len()];
+        for ((source, lower), upper) in self.sources.iter().zip(&self.constraint_lower).zip(&self.constraint_upper) {
+            if let Source::Limit(limit, at) = *source {
+                let value = self.evaluation.values[at] / self.limits[limit].scale;
+                near[at] |= value - lower < NEAR || upper - value < NEAR;
+            }
+        }
+        self.rows.clear();
+        self.rows.extend(self.always.iter().zip(&self.near).zip(&near).map(|((always, before), near)| *always || *before || *near));
+        let done = self.evaluator.differentiate(&self.x, &self.rows, &mut self.evaluation, &mut self.workspace);
+        self.current = done.is_ok();
+        done.map_err(|_| Rejected)?;
+        self.near = near;
+        Ok(())
     }
 
     /// The variables, SI, of a point.
@@ -201,6 +248,17 @@ impl<'a> Posing<'a> {
         }
     }
 
+    /// The goal at the start, in its own unit, and the largest violation there, relative to the scale of its limit. `None` where they
+    /// are not numbers.
+    pub(crate) fn standing(&mut self) -> Option<(f64, f64)> {
+        let mut out = Values::default();
+        let start = self.start.clone();
+        self.evaluate(&start, false, &mut out).ok()?;
+        let bounds = self.constraint_lower.iter().zip(&self.constraint_upper);
+        let violation = out.constraints.iter().zip(bounds).fold(0.0_f64, |m, (v, (l, u))| m.max(l - v).max(v - u));
+        Some((out.objective, violation))
+    }
+
     /// Level of a band, its unknown if it is free, and its half width.
     fn band(&self, index: usize, y: &[f64]) -> (f64, Option<usize>, f64) {
         let band = &self.step.bands[index];
@@ -242,15 +300,17 @@ impl Problem for Posing<'_> {
     }
 
     fn evaluate(&mut self, y: &[f64], gradients: bool, out: &mut Values) -> Result<(), Rejected> {
-        // Derivatives cost little beside the values, and are most often asked for next at the same point.
         let x = self.design(y);
         if !self.current || x != self.x {
             self.x = x;
             self.evaluations += 1;
-            self.current = self.evaluator.evaluate(&self.x, true, &mut self.evaluation, &mut self.workspace).is_ok();
+            self.current = self.evaluator.evaluate(&self.x, false, &mut self.evaluation, &mut self.workspace).is_ok();
             if !self.current {
                 return Err(Rejected);
             }
+        }
+        if gradients {
+            self.differentiate()?;
         }
         let unknowns = y.len();
         out.gradient.resize(unknowns, 0.0);
@@ -259,42 +319,39 @@ impl Problem for Posing<'_> {
         out.jacobian.clear();
         out.jacobian.resize(if gradients { unknowns * self.sources.len() } else { 0 }, 0.0);
         let mut nothing = Vec::new();
-        let mut above = false;
         for (index, source) in self.sources.iter().enumerate() {
             let row = if gradients { &mut out.jacobian[index * unknowns..(index + 1) * unknowns] } else { &mut nothing[..] };
             out.constraints[index] = match *source {
                 Source::Limit(limit, at) => {
                     let scale = self.limits[limit].scale;
-                    if gradients {
+                    if gradients && self.rows[at] {
                         self.add_row(at, 1.0 / scale, row);
                     }
                     self.evaluation.values[at] / scale
                 }
-                Source::Band(band, at) => {
-                    above = !above;
-                    let sign = if above { 1.0 } else { -1.0 };
+                Source::Band(band, at, side) => {
                     let (level, place, half_width) = self.band(band, y);
-                    let scale = self.levels[band].abs();
+                    let (half_width, scale) = (half_width - self.reserve.of_band(at), self.levels[band].abs());
                     if gradients {
                         self.add_row(at, 1.0 / scale, row);
                         if let Some(place) = place {
-                            row[place] -= (1.0 + sign * half_width) * self.levels[band] / scale;
+                            row[place] -= (1.0 + side * half_width) * self.levels[band] / scale;
                         }
                         if self.step.bands[band].half_width.is_none()
                             && let Some(top) = self.top()
                         {
-                            row[top] -= sign * level / scale;
+                            row[top] -= side * level / scale;
                         }
                     }
-                    (self.evaluation.values[at] - (1.0 + sign * half_width) * level) / scale
+                    (self.evaluation.values[at] - (1.0 + side * half_width) * level) / scale
                 }
-                Source::Largest(at) => {
+                Source::Largest(at, side) => {
                     let (Goal::Largest { scale, .. }, Some(top)) = (&self.step.goal, self.top()) else { continue };
                     if gradients {
-                        self.add_row(at, 1.0 / scale, row);
+                        self.add_row(at, side / scale, row);
                         row[top] -= 1.0;
                     }
-                    self.evaluation.values[at] / scale - y[top]
+                    side * self.evaluation.values[at] / scale - y[top]
                 }
             };
         }

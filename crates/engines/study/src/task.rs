@@ -11,6 +11,8 @@ pub struct Limit {
     pub name: String,
     /// Key in the project file that relaxes it: `requirements.stress`.
     pub key: String,
+    /// Names of the checks that it serves: `stress`, `safety_factor`.
+    pub checks: Vec<&'static str>,
     /// The values limited, among all.
     pub values: Range<usize>,
     /// Smallest value allowed, SI; −∞ without one.
@@ -43,7 +45,7 @@ pub enum Goal {
     Variables(Vec<(usize, f64)>),
     /// A weighted sum of values.
     Values(Vec<(usize, f64)>),
-    /// The largest of some values, over their scale.
+    /// The largest size of some values, of either sign, over their scale.
     Largest {
         /// The values, among all.
         values: Range<usize>,

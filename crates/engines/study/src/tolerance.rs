@@ -192,6 +192,11 @@ fn limited(measures: &[Measure]) -> Vec<usize> {
     (0..measures.len()).filter(|i| measures[*i].lower > f64::NEG_INFINITY || measures[*i].upper < f64::INFINITY).collect()
 }
 
+/// A measure that has a value.
+fn known(value: f64) -> Option<f64> {
+    (!value.is_nan()).then_some(value)
+}
+
 /// A multiple of the replicates.
 fn rounded(samples: u64) -> u64 {
     samples.max(1).div_ceil(REPLICATES as u64).saturating_mul(REPLICATES as u64)
@@ -212,8 +217,9 @@ pub fn study(evaluator: &dyn Evaluator, plan: &Plan, watch: &mut dyn FnMut(f64) 
     let mut workspace = evaluator.workspace();
     let mut nominal = Evaluation::default();
     evaluator.evaluate(&x, false, &mut nominal, &mut workspace).map_err(ToleranceError::Nominal)?;
-    let mut nominal_measures = Vec::new();
-    evaluator.measure(&x, &nominal.values, &mut nominal_measures);
+    let mut measured = Vec::new();
+    evaluator.measure(&x, &nominal.values, &mut measured, &mut workspace);
+    let nominal_measures = measured.into_iter().map(known).collect();
 
     let shares_plan = shares::plan(plan, variables.len()).map_err(ToleranceError::Sensitivity)?;
     let rows = shares_plan.as_ref().map_or(0, |p| p.rows(plan.sensitivity_points));

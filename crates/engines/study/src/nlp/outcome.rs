@@ -4,7 +4,8 @@
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Bound on stationarity and complementarity, scaled: variables by their range (or [`Settings::scales`]), the objective by the
-    /// largest entry of its scaled gradient, each constraint likewise. Default 1e-8.
+    /// largest entry of its scaled gradient, each constraint likewise; and on the gain that is still predicted, relative to the
+    /// objective. Default 1e-8.
     pub tolerance: f64,
     /// Bound on the largest violation of a constraint, scaled. A violation of 1e-8 is a distance from the limit of 1e-8 of the range
     /// of the variable that moves the constraint most. Default 1e-8.
@@ -12,7 +13,9 @@ pub struct Settings {
     /// Most iterations. Default 500.
     pub iteration_limit: usize,
     /// Least gain that is worth going on for, relative to the objective: the search ends as [`Stop::Settled`] when ten iterations at
-    /// points that satisfy the constraints have gained less. Default 0: it goes on.
+    /// points that satisfy the constraints have gained less, or when at three of them in a row less is predicted. It is also given up,
+    /// as [`Stop::StalledInfeasible`], when no point was near to satisfying the constraints and ten iterations have not lowered the
+    /// sum of the violations by a tenth. Default 0: it goes on.
     pub least_gain: f64,
     /// A typical change of each variable, in its own unit. Empty (the default): the distance between its bounds; of a variable without
     /// two finite bounds its magnitude at the start, or 1 if that is zero. Entries that are not positive and finite mean the same.
@@ -109,14 +112,14 @@ pub struct Solution {
 pub enum Stop {
     /// The optimality conditions hold to the tolerances: a local optimum.
     Converged,
-    /// The constraints hold, and the last iterations gained less than [`Settings::least_gain`]: near a local optimum, whose conditions
-    /// are not met to the tolerances.
+    /// The constraints hold, and the last iterations gained, or promised, less than [`Settings::least_gain`]: near a local optimum, whose
+    /// conditions are not met to the tolerances.
     Settled,
     /// The constraints hold but no step improves the objective any more although the optimality conditions are not met: noise in the
     /// values, wrong derivatives, a kink, or a solution without multipliers.
     Stalled,
-    /// No step improves and the constraints do not hold, nor is the point proved to be one of least violation. Same causes as
-    /// [`Stop::Stalled`]; try another start.
+    /// No step improves, or too little as [`Settings::least_gain`] says, and the constraints do not hold, nor is the point proved to be
+    /// one of least violation. Same causes as [`Stop::Stalled`]; try another start.
     StalledInfeasible,
     /// The sum of the scaled violations is stationary and not zero, and the search came back after it was moved away: near this point
     /// nothing satisfies the constraints. Those that are violated are the ones to relax; the others hold.

@@ -1,18 +1,23 @@
 //! The iteration.
 
-use std::collections::VecDeque;
-
-use super::hessian::{Hessian, dot};
+use super::hessian::Hessian;
 use super::kkt;
 use super::merit::{Found, LineSearch, Merit};
-use super::model::{Model, NoStart, Point, violations};
+use super::model::{Model, NoStart, Point};
 use super::outcome::{Counters, KktResidual, Progress, Settings, Solution, Stop};
+use super::patience::Patience;
 use super::problem::Problem;
-use super::qp::{Answer, Outcome, Qp, QpSolver};
-use super::walls::{self, Walls};
+use super::qp::{Answer, Outcome, QpSolver};
+use super::subproblem::Subproblem;
+use super::walls::Walls;
 
-/// Largest step of a variable at the beginning, in its scale; it grows with success and shrinks with failure.
-const FIRST_REACH: f64 = 10.0;
+/// Largest step of a variable at the beginning, in its scale: no linearisation is believed beyond. It grows with success and shrinks with
+/// failure.
+const FIRST_REACH: f64 = 1.0;
+/// A reach below this is next to nothing.
+const LEAST_REACH: f64 = 1e-9;
+/// A prediction within less than this reach says nothing about the rest of the way.
+const FAIR_REACH: f64 = 0.1;
 /// Multipliers beyond this (scaled) count as contradiction of the linearised constraints.
 const PRICE_LIMIT: f64 = 1e8;
 /// Part of the attainable decrease of the linearised violation that an elastic step must bring.
@@ -29,9 +34,10 @@ const BLOCKED_LIMIT: usize = 20;
 const TINY_STEP: f64 = 1e-7;
 /// An objective this far below the start (scaled) counts as without bound.
 const BOTTOMLESS: f64 = 1e12;
-
-/// Iterations over which a gain is looked at.
-const PATIENCE: usize = 10;
+/// A violation below so many times what is allowed is not hopeless.
+const NEARLY: f64 = 100.0;
+/// Objectives (scaled) below this count as this where a gain is compared with them.
+const SMALL_OBJECTIVE: f64 = 1e-3;
 
 /// A point with all that is reported about it.
 #[derive(Debug, Clone)]
@@ -56,66 +62,14 @@ impl Record {
     }
 }
 
-/// The linearisation at a point with the walls after its rows, in owned form; [`Subproblem::qp`] lends it.
-struct Subproblem {
-    rows: Vec<f64>,
-    row_lower: Vec<f64>,
-    row_upper: Vec<f64>,
-    lower: Vec<f64>,
-    upper: Vec<f64>,
-}
-
-impl Subproblem {
-    fn new(model: &Model<'_>, point: &Point, walls: &Walls, reach: f64) -> Self {
-        let minus = |bounds: &[f64], values: &[f64]| bounds.iter().zip(values).map(|(b, v)| b - v).collect::<Vec<f64>>();
-        let mut lower = minus(&model.lower, &point.z);
-        let mut upper = minus(&model.upper, &point.z);
-        // Rounding must not put the present point outside.
-        for (l, u) in lower.iter_mut().zip(&mut upper) {
-            (*l, *u) = (l.clamp(-reach, 0.0), u.clamp(0.0, reach));
-        }
-        let mut row_lower = minus(&model.row_lower, &point.constraints);
-        let mut row_upper = minus(&model.row_upper, &point.constraints);
-        let mut rows = point.jacobian.clone();
-        walls.append(&point.z, &mut rows, &mut row_upper);
-        row_lower.resize(row_upper.len(), f64::NEG_INFINITY);
-        Self { rows, row_lower, row_upper, lower, upper }
-    }
-
-    /// Number of constraints, without the walls.
-    fn constraints(&self) -> usize {
-        self.row_lower.len() - walls::COUNT
-    }
-
-    fn qp<'a>(&'a self, point: &'a Point, hessian: &'a [f64], gradient: &'a [f64], penalty: f64) -> Qp<'a> {
-        Qp {
-            n: point.z.len(),
-            hessian,
-            gradient,
-            rows: &self.rows,
-            row_lower: &self.row_lower,
-            row_upper: &self.row_upper,
-            lower: &self.lower,
-            upper: &self.upper,
-            penalty,
-            firm_from: self.constraints(),
-        }
-    }
-
-    /// Sum of the violations of the linearised constraints after a step.
-    fn excess(&self, step: &[f64]) -> f64 {
-        let (n, m) = (step.len(), self.constraints());
-        let values: Vec<f64> = (0..m).map(|i| dot(&self.rows[i * n..(i + 1) * n], step)).collect();
-        violations(&values, &self.row_lower[..m], &self.row_upper[..m]).sum()
-    }
-}
-
 struct Search<'a, 'p> {
     model: Model<'p>,
     settings: &'a Settings,
     point: Point,
     hessian: Hessian,
     solver: QpSolver,
+    /// Of programmes without the objective.
+    least: QpSolver,
     merit: Merit,
     reach: f64,
     /// Price of violation while in elastic mode.
@@ -125,10 +79,11 @@ struct Search<'a, 'p> {
     /// Steps in a row that ended at a wall and were next to nothing.
     blocked: usize,
     shaken: bool,
+    /// Whether the reach has once become next to nothing.
+    jammed: bool,
     best: Option<Record>,
     first_objective: f64,
-    /// The best objective at the last iterations that ended at points that satisfy the constraints, the oldest first.
-    recent: VecDeque<f64>,
+    patience: Patience,
 }
 
 /// Minimises; see the module for the method. Never panics on what the problem answers.
@@ -140,15 +95,17 @@ pub fn minimise(problem: &mut dyn Problem, start: &[f64], settings: &Settings, w
             hessian: Hessian::identity(model.variables()),
             merit: Merit::new(constraints),
             solver: QpSolver::default(),
+            least: QpSolver::default(),
             reach: FIRST_REACH,
             price: None,
             drowned: 0,
             walls: Walls::default(),
             blocked: 0,
             shaken: false,
+            jammed: false,
             best: None,
             first_objective: point.objective,
-            recent: VecDeque::new(),
+            patience: Patience::default(),
             model,
             settings,
             point,
@@ -194,6 +151,7 @@ impl Search<'_, '_> {
                     bounds: vec![0.0; self.model.variables()],
                 },
             };
+            let gain = self.predicted_gain(&linear, &answer);
             let record = self.record(&answer);
             let residual = record.residual;
             self.remember(&record);
@@ -202,11 +160,12 @@ impl Search<'_, '_> {
                 return self.finish(record, true, Stop::Interrupted);
             }
             let feasible = residual.feasibility <= self.settings.feasibility;
-            if feasible && residual.optimality() <= self.settings.tolerance {
+            let nothing = self.settings.tolerance * self.point.objective.abs().max(SMALL_OBJECTIVE);
+            if feasible && residual.optimality() <= self.settings.tolerance && gain <= nothing {
                 return self.finish(record, false, Stop::Converged);
             }
-            if feasible && self.settled() {
-                return self.finish(record, true, Stop::Settled);
+            if let Some(stop) = self.not_worth_it(&linear, &answer, (feasible, gain)) {
+                return self.finish(record, true, stop);
             }
             if iteration >= self.settings.iteration_limit {
                 return self.finish(record, true, Stop::IterationLimit);
@@ -226,22 +185,38 @@ impl Search<'_, '_> {
             if feasible && self.point.objective < self.first_objective.min(0.0) - BOTTOMLESS {
                 return self.finish(record, false, Stop::Unbounded);
             }
-            if !self.advance(&linear, &answer) {
+            if !self.advance(&linear, &answer, gain) {
                 return self.finish(record, true, Stop::Stalled);
             }
             iteration += 1;
         }
     }
 
-    /// Whether the last iterations have gained next to nothing.
-    fn settled(&mut self) -> bool {
-        let Some(best) = &self.best else { return false };
-        self.recent.push_back(best.objective);
-        if self.recent.len() <= PATIENCE {
-            return false;
+    /// Lets the penalties follow the multipliers; by how much the merit function falls over the whole step, to first order.
+    fn predicted_gain(&mut self, linear: &Subproblem, answer: &Answer) -> f64 {
+        match self.price {
+            Some(price) => self.merit.penalties.fill(price),
+            None => self.merit.follow(&answer.rows),
         }
-        let before = self.recent.pop_front().unwrap_or(f64::INFINITY);
-        before - best.objective < self.settings.least_gain * best.objective.abs()
+        let qp = linear.qp(&self.point, self.hessian.matrix(), &self.point.gradient, f64::INFINITY);
+        -self.merit.slope(&qp, &answer.step)
+    }
+
+    /// Whether going on is not worth the evaluations, by [`Settings::least_gain`]; then what that is called. A gain counts where the constraints
+    /// hold.
+    fn not_worth_it(&mut self, linear: &Subproblem, answer: &Answer, (feasible, gain): (bool, f64)) -> Option<Stop> {
+        let best = self.best.as_ref()?;
+        if best.residual.feasibility > NEARLY * self.settings.feasibility {
+            let sum = linear.excess(&vec![0.0; self.model.variables()]);
+            return (self.settings.least_gain > 0.0 && self.patience.hopeless(sum)).then_some(Stop::Stalled);
+        }
+        if !feasible {
+            return None;
+        }
+        let fair = self.reach >= FAIR_REACH || answer.step.iter().all(|d| d.abs() < 0.99 * self.reach);
+        let predicted = if fair { gain } else { f64::INFINITY };
+        let least = self.settings.least_gain * best.objective.abs();
+        (least > 0.0 && self.patience.settled(best.objective, predicted, least)).then_some(Stop::Settled)
     }
 
     /// The step and the multipliers of this iteration; `None` if the quadratic programme could not be solved.
@@ -273,6 +248,10 @@ impl Search<'_, '_> {
             if price >= PRICE_LIMIT {
                 return Some(answer);
             }
+            // What is attainable is at most all of it: often enough to know.
+            if now - then >= STEERING * now {
+                return Some(answer);
+            }
             let least = if let Some(least) = attainable { least } else { linear.excess(&self.least_violation(linear)?.step) };
             attainable = Some(least);
             if now - then >= STEERING * (now - least) {
@@ -294,8 +273,8 @@ impl Search<'_, '_> {
         (0..n).for_each(|j| hessian[j * n + j] = 1e-9);
         let zero = vec![0.0; n];
         let qp = linear.qp(&self.point, &hessian, &zero, 1.0);
-        let mut solver = QpSolver::default();
-        (solver.solve(&qp, &mut self.model.counters) == Outcome::Solved).then_some(solver.answer)
+        let solved = self.least.solve(&qp, &mut self.model.counters) == Outcome::Solved;
+        solved.then(|| self.least.answer.clone())
     }
 
     /// Whether the sum of violations cannot be lowered to first order within one unit of the scaled variables; then the solution of that
@@ -305,7 +284,8 @@ impl Search<'_, '_> {
         if now - linear.excess(&answer.step) > 1e-4 * now {
             return None;
         }
-        let near = Subproblem::new(&self.model, &self.point, &self.walls, 1.0);
+        // Walls are none of the problem's limits.
+        let near = Subproblem::new(&self.model, &self.point, &Walls::default(), 1.0);
         let mut least = self.least_violation(&near)?;
         least.rows.truncate(linear.constraints());
         let drop = ((now - near.excess(&least.step)) / now).max(0.0);
@@ -329,54 +309,79 @@ impl Search<'_, '_> {
         if possible {
             self.point = moved;
             self.price = None;
+            self.merit.forget();
+            self.patience = Patience::default();
             self.reset();
         }
         possible
     }
 
-    /// Moves to a better point and learns from it; false if there is none.
-    fn advance(&mut self, linear: &Subproblem, answer: &Answer) -> bool {
-        match self.price {
-            Some(price) => self.merit.penalties.fill(price),
-            None => self.merit.follow(&answer.rows),
-        }
+    /// Moves to a better point and learns from it, or shortens the reach; false if there is nothing left to try.
+    fn advance(&mut self, linear: &Subproblem, answer: &Answer, gain: f64) -> bool {
         let qp = linear.qp(&self.point, self.hessian.matrix(), &self.point.gradient, self.price.unwrap_or(f64::INFINITY));
         let length = answer.step.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
-        let gain = -self.merit.slope(&qp, &answer.step);
         self.drowned = if gain > 1e-15 * self.point.objective.abs().max(1e-3) { 0 } else { self.drowned + 1 };
+        if self.walls.stand() {
+            // Near a region of rejection a detour may lead into a corner: only a fall is believed.
+            self.merit.forget();
+        }
         let search = LineSearch { merit: &self.merit, qp: &qp, point: &self.point, step: &answer.step };
         let drowned = self.drowned > DROWNED_LIMIT;
         let found = if drowned { Found::nothing(None) } else { search.run(&mut self.model, &mut self.solver) };
         self.walls.age();
-        let part = found.part;
         if let Some(rejected) = found.rejected {
             self.walls.raise(&self.point.z, &answer.step, rejected);
         }
-        let tiny = found.rejected.is_some() && part * length < TINY_STEP;
+        let moved = found.part * length;
+        let tiny = found.rejected.is_some() && moved < TINY_STEP;
         self.blocked = if tiny { self.blocked + 1 } else { 0 };
         let Some(next) = found.next else {
-            let again = tiny || !self.hessian.is_fresh() && !drowned;
-            self.reset();
+            let again = if tiny { self.forget() } else { self.shorten(moved, drowned) };
             return again && self.blocked <= BLOCKED_LIMIT;
         };
         if self.blocked > BLOCKED_LIMIT {
             return false;
         }
-        if part < 0.1 {
-            self.reach = (4.0 * part * length).max(1e-4);
+        if found.part < 0.1 {
+            self.reach = (4.0 * moved).max(1e-4);
         } else if length >= 0.99 * self.reach {
             self.reach *= 4.0;
         }
+        self.learn(&next, answer);
+        self.merit.remember(&self.model, &self.point);
+        self.point = *next;
+        true
+    }
+
+    /// Shortens the reach after a step that failed. Where it becomes next to nothing, the curvature is forgotten, for it may be what
+    /// misleads: once per search, and wherever walls stand in the way. False if there is nothing left to try.
+    fn shorten(&mut self, reach: f64, drowned: bool) -> bool {
+        self.merit.remember(&self.model, &self.point);
+        if reach > LEAST_REACH {
+            self.reach = reach;
+            return true;
+        }
+        let again = !self.hessian.is_fresh() && !drowned && (self.walls.stand() || !std::mem::replace(&mut self.jammed, true));
+        self.forget() && again
+    }
+
+    /// Forgets the curvature and how far it could be believed. True.
+    fn forget(&mut self) -> bool {
+        self.reach = FIRST_REACH;
+        self.reset();
+        true
+    }
+
+    /// Learns the curvature between the present point and the next.
+    fn learn(&mut self, next: &Point, answer: &Answer) {
         let step: Vec<f64> = next.z.iter().zip(&self.point.z).map(|(a, b)| a - b).collect();
         let (mut before, mut after) = (Vec::new(), Vec::new());
         kkt::lagrangian_gradient(&self.point, &answer.rows, &mut before);
-        kkt::lagrangian_gradient(&next, &answer.rows, &mut after);
+        kkt::lagrangian_gradient(next, &answer.rows, &mut after);
         let change: Vec<f64> = after.iter().zip(&before).map(|(a, b)| a - b).collect();
         if step.iter().any(|s| s.abs() > 1e-13) && !self.hessian.update(&step, &change) {
             self.model.counters.resets += 1;
         }
-        self.point = *next;
-        true
     }
 
     fn reset(&mut self) {

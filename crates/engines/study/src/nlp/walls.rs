@@ -38,6 +38,11 @@ impl Walls {
         }
     }
 
+    /// Whether any stands.
+    pub(super) fn stand(&self) -> bool {
+        self.places.iter().any(Option::is_some)
+    }
+
     /// An iteration passes.
     pub(super) fn age(&mut self) {
         for place in &mut self.places {
@@ -86,7 +91,9 @@ mod tests {
             walls.age();
         }
         assert!(rows(&walls, &[0.0, 0.0]).1[0].is_finite());
+        assert!(walls.stand());
         walls.age();
+        assert!(!walls.stand());
         assert_eq!(rows(&walls, &[0.0, 0.0]).1, [f64::INFINITY; COUNT]);
     }
 }

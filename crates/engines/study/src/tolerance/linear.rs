@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::run::{drawn, in_order, points};
+use super::run::{Rooms, drawn, in_order, points};
 use super::{Kept, Plan, Study, Verdicts, rounded};
 use crate::differences::jacobian_with_steps;
 use crate::evaluator::{Evaluation, Evaluator, Workspace};
@@ -51,16 +51,20 @@ pub(super) fn estimate(
     let steps: Vec<f64> = plan.population.marginals().iter().map(Distribution::sd).collect();
     let mut at = Evaluation { values: study.nominal.clone(), jacobian: Vec::new() };
     jacobian_with_steps(evaluator, &nominal, &steps, &mut at, workspace).ok()?;
-    let model = Model { evaluator, plan, nominal, values: &study.nominal, jacobian: &at.jacobian };
+    let model = Model { rooms: Rooms::new(evaluator), evaluator, plan, nominal, values: &study.nominal, jacobian: &at.jacobian };
 
     let sample = points(plan, rounded(plan.linear_samples)).ok()?;
     let mut verdicts = Verdicts::new(&study.measures, limited);
+    let count = evaluator.measures().len();
     let chunk = |first: u64| {
         let designs = drawn(&plan.population, &sample, first);
-        let mut values = Vec::new();
-        designs.chunks_exact(model.nominal.len().max(1)).map(|x| model.measured(x, &mut values)).collect::<Vec<_>>()
+        let each = designs.len() / model.nominal.len().max(1);
+        let mut all = Vec::with_capacity(each * count);
+        model.each(&designs, |measures| all.extend_from_slice(measures));
+        (each, all)
     };
-    in_order(sample.count, &mut |_| true, &chunk, &mut |chunk: Vec<Vec<f64>>| chunk.iter().for_each(|m| verdicts.add(Some(m))));
+    let mut add = |(each, all): (usize, Vec<f64>)| (0..each).for_each(|i| verdicts.add(all.get(i * count..(i + 1) * count)));
+    in_order(sample.count, &mut |_| true, &chunk, &mut add);
 
     let needed = if limited.is_empty() { Vec::new() } else { model.needed()? };
     let (all, kept) = (verdicts.all.estimate(plan.confidence), verdicts.kept(plan.confidence));
@@ -68,6 +72,7 @@ pub(super) fn estimate(
 }
 
 struct Model<'a> {
+    rooms: Rooms<'a>,
     evaluator: &'a dyn Evaluator,
     plan: &'a Plan,
     nominal: Vec<f64>,
@@ -84,11 +89,16 @@ impl Model<'_> {
         out.extend(self.values.iter().zip(self.jacobian.chunks_exact(n)).map(|(value, jacobian)| value + row(jacobian)));
     }
 
-    fn measured(&self, x: &[f64], values: &mut Vec<f64>) -> Vec<f64> {
-        let mut measured = Vec::new();
-        self.extrapolate(x, values);
-        self.evaluator.measure(x, values, &mut measured);
-        measured.into_iter().map(|m| m.unwrap_or(f64::NAN)).collect()
+    /// Hands the measures of designs, which are there one after the other, to `sink`.
+    fn each(&self, designs: &[f64], mut sink: impl FnMut(&[f64])) {
+        let (mut values, mut measured) = (Vec::new(), Vec::new());
+        self.rooms.with(|room| {
+            for x in designs.chunks_exact(self.nominal.len().max(1)) {
+                self.extrapolate(x, &mut values);
+                self.evaluator.measure(x, &values, &mut measured, room);
+                sink(&measured);
+            }
+        });
     }
 
     /// The factor that each variable's half width would need.
@@ -127,15 +137,10 @@ impl Model<'_> {
     fn yield_at(&self, variable: usize, scale: f64, designs: &[f64]) -> f64 {
         let n = self.nominal.len().max(1);
         let mean = self.plan.population.marginals()[variable].mean();
-        let (mut x, mut values, mut good) = (Vec::new(), Vec::new(), 0_usize);
-        let measures = self.evaluator.measures();
-        for design in designs.chunks_exact(n) {
-            x.clear();
-            x.extend_from_slice(design);
-            x[variable] = mean + scale * (design[variable] - mean);
-            let found = self.measured(&x, &mut values);
-            good += usize::from(measures.iter().zip(found).all(|(measure, value)| measure.met(value)));
-        }
+        let (measures, mut good) = (self.evaluator.measures(), 0_usize);
+        let mut scaled = designs.to_vec();
+        scaled.iter_mut().skip(variable).step_by(n).for_each(|x| *x = mean + scale * (*x - mean));
+        self.each(&scaled, |found| good += usize::from(measures.iter().zip(found).all(|(measure, value)| measure.met(*value))));
         good as f64 / (designs.len() / n).max(1) as f64
     }
 }

@@ -44,7 +44,7 @@ impl<'a> Rooms<'a> {
         Self { evaluator, free: Mutex::new(Vec::new()) }
     }
 
-    fn with<T>(&self, work: impl FnOnce(&mut Workspace) -> T) -> T {
+    pub(super) fn with<T>(&self, work: impl FnOnce(&mut Workspace) -> T) -> T {
         let found = self.free.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut room = found.unwrap_or_else(|| self.evaluator.workspace());
         let result = work(&mut room);
@@ -127,16 +127,21 @@ fn evaluated(evaluator: &dyn Evaluator, population: &Population, points: &Points
     let all = drawn(population, points, first);
     let n = population.len().max(1);
     let mut chunk = Chunk::default();
-    let mut measured = Vec::new();
-    evaluator.evaluate_all(&all, room, &mut |index, found| match found {
+    evaluator.evaluate_all(&all, room, &mut |_, found| match found {
         Ok(evaluation) => {
-            evaluator.measure(&all[index * n..(index + 1) * n], &evaluation.values, &mut measured);
             chunk.values.extend_from_slice(&evaluation.values);
-            chunk.measures.extend(measured.iter().map(|m| m.unwrap_or(f64::NAN)));
             chunk.failed.push(None);
         }
         Err(failure) => chunk.failed.push(Some(failure.reason.clone())),
     });
+    let sound = chunk.failed.iter().filter(|f| f.is_none()).count().max(1);
+    let mut values = chunk.values.chunks_exact((chunk.values.len() / sound).max(1));
+    let mut measured = Vec::with_capacity(evaluator.measures().len());
+    chunk.measures.reserve(sound * evaluator.measures().len());
+    for (x, _) in all.chunks_exact(n).zip(&chunk.failed).filter(|(_, failed)| failed.is_none()) {
+        evaluator.measure(x, values.next().unwrap_or_default(), &mut measured, room);
+        chunk.measures.extend_from_slice(&measured);
+    }
     chunk
 }
 

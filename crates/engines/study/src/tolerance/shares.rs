@@ -1,7 +1,7 @@
 //! Which variables matter: ends of one at a time, and shares of the variance.
 
 use super::run::{Points, designs};
-use super::{Plan, REPLICATES, Study};
+use super::{Plan, REPLICATES, Study, known};
 use crate::evaluator::{Evaluation, Evaluator, Workspace};
 use crate::sampling::{Population, SensitivityError, SensitivityPlan, SensitivityTally, SobolIndices};
 
@@ -55,9 +55,9 @@ pub(super) fn tornado(evaluator: &dyn Evaluator, population: &Population, study:
             let mut x = nominal.clone();
             x[variable] = end;
             if evaluator.evaluate(&x, false, &mut out, workspace).is_ok() {
-                evaluator.measure(&x, &out.values, &mut measured);
+                evaluator.measure(&x, &out.values, &mut measured, workspace);
                 for (pair, index) in values.iter_mut().zip(&study.limiting) {
-                    pair[side] = measured.get(*index).copied().flatten();
+                    pair[side] = measured.get(*index).copied().and_then(known);
                 }
             }
         }

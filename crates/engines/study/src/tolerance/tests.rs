@@ -57,9 +57,9 @@ impl<F: Fn(&[f64]) -> Result<Vec<f64>, String> + Send + Sync> Evaluator for Toy<
         Ok(())
     }
 
-    fn measure(&self, _: &[f64], values: &[f64], out: &mut Vec<Option<f64>>) {
+    fn measure(&self, _: &[f64], values: &[f64], out: &mut Vec<f64>, _: &mut Workspace) {
         out.clear();
-        out.extend(values.iter().map(|v| Some(*v)));
+        out.extend_from_slice(values);
     }
 }
 

@@ -70,7 +70,7 @@ const fn elsewhere(number: u32, objective: f64, share: f64, stop: Stop, reason: 
 }
 
 /// Every problem that does not end, converged, at the published optimum.
-const ELSEWHERE: [Elsewhere; 8] = [
+const ELSEWHERE: [Elsewhere; 6] = [
     elsewhere(
         13,
         1.0,
@@ -78,13 +78,11 @@ const ELSEWHERE: [Elsewhere; 8] = [
         Stop::Stalled,
         "no multipliers exist at the cusp; a cubic constraint moves x1 by the cube root of its tolerance",
     ),
-    elsewhere(16, 3.982_060_454_601_90, SHARE, Stop::Converged, "local minimum at x2 = 1 in the other branch of the valley"),
+    elsewhere(16, 3.982_060_454_601_90, SHARE, Stop::Converged, "local minimum on x1 + x2^2 = 0 in the other branch of the valley"),
     elsewhere(20, 40.198_729_961_448_6, SHARE, Stop::Converged, "local minimum where x1 = -1/2 meets the circle"),
     elsewhere(25, 0.0, SHARE, Stop::Stalled, "reached to rounding; the gradient at the start, which scales the objective, is nearly zero"),
     elsewhere(33, -4.0, SHARE, Stop::Converged, "(0, 0, 2) is stationary: from x2 = 0 no first derivative leads away from x2 = 0"),
     elsewhere(55, 20.0 / 3.0, SHARE, Stop::Converged, "the feasible set is a segment and both of its ends are local minima"),
-    elsewhere(63, 950.0, SHARE, Stop::Infeasible, "(0, 5, 0): around it no point of the sphere within the bounds is nearer to the plane"),
-    elsewhere(117, 32.348_678_979_1, 1e-5, Stop::Converged, "the objective is scaled by its gradient at the start, 2400 per range of x7"),
 ];
 
 fn solve(case: &Case) -> Solution {
@@ -131,5 +129,5 @@ fn optima_are_found() {
     }
     println!("{known} of {} to the known optimum, {evaluations} evaluations", cases.len());
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(known >= 90);
+    assert!(known >= 102);
 }

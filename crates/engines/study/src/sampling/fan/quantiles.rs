@@ -32,6 +32,8 @@ pub(super) struct Bins {
     last: i64,
     /// A power of two.
     width: f64,
+    /// One over it, as exact.
+    per_width: f64,
 }
 
 impl Default for Quantiles {
@@ -95,7 +97,7 @@ impl Bins {
             width *= 2.0;
         }
         let (first, last) = (number(min, width) as i64, number(max, width) as i64);
-        let mut bins = Self { counts: vec![0; BINS], first, last, width };
+        let mut bins = Self { counts: vec![0; BINS], first, last, width, per_width: 1.0 / width };
         for value in values {
             bins.add(*value);
         }
@@ -103,6 +105,12 @@ impl Bins {
     }
 
     fn add(&mut self, value: f64) {
+        // Nearly every value falls between those before.
+        let bin = floor(value * self.per_width);
+        if self.first <= bin && bin <= self.last {
+            self.counts[slot(bin)] += 1;
+            return;
+        }
         while !fits(value.min(self.first as f64 * self.width), value.max(self.last as f64 * self.width), self.width) {
             self.widen();
         }
@@ -120,6 +128,7 @@ impl Bins {
         self.counts = joined;
         (self.first, self.last) = (self.first.div_euclid(2), self.last.div_euclid(2));
         self.width *= 2.0;
+        self.per_width *= 0.5;
     }
 
     /// The value of a whole rank, as if the values of a bin were spread evenly over it.
@@ -144,6 +153,12 @@ fn slot(bin: i64) -> usize {
 /// The number of the bin that holds a value: whole.
 fn number(value: f64, width: f64) -> f64 {
     (value / width).floor()
+}
+
+/// The largest whole number not above a value; the nearest that there is, beyond 2^63.
+fn floor(value: f64) -> i64 {
+    let towards_zero = value as i64;
+    if towards_zero as f64 > value { towards_zero.saturating_sub(1) } else { towards_zero }
 }
 
 /// Whether the bins reach from one value to the other, and are not so narrow that their numbers could not be told apart. Wider bins
