@@ -2,6 +2,7 @@
 
 pub mod dense;
 pub mod diagnostics;
+pub mod fits;
 pub mod inertia;
 pub mod maths;
 pub mod quadrature;

@@ -9,6 +9,8 @@ mod spelling;
 use std::borrow::Cow;
 use std::fmt;
 
+use crate::fits::{Fit, FitError};
+
 /// Exponents of kg, m, s, A, K, rad and of the energy mark.
 type Exponents = [i8; 7];
 
@@ -382,17 +384,22 @@ fn find_atom(name: &str) -> Result<&'static Atom, UnitError> {
 }
 
 /// How far a made value may lie from the typed one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
     /// `±`: half width in SI units.
     Symmetric(f64),
-    /// ISO 286 fit on a diameter, such as `h7`: letter(s) and grade.
-    Fit {
-        /// Fundamental deviation: upper case for holes, lower case for shafts.
-        letters: String,
-        /// Standard tolerance grade, 1 to 18.
-        grade: u8,
-    },
+    /// ISO 286 fit on a diameter, such as `h7`.
+    Fit(Fit),
+}
+
+impl Tolerance {
+    /// Lower and upper deviation from a nominal value, both SI. Those of a fit follow from the diameter; `None` where it has none.
+    pub fn deviations_si(&self, nominal_si: f64) -> Option<[f64; 2]> {
+        match self {
+            Self::Symmetric(half) => Some([-half, *half]),
+            Self::Fit(fit) => fit.deviations_m(nominal_si).ok(),
+        }
+    }
 }
 
 /// A number with the unit and tolerance it was typed with. SI inside.
@@ -423,6 +430,8 @@ pub enum QuantityError {
     WrongDimension(String, Option<Dimension>),
     /// The part after `±` is not a positive quantity of the same dimension.
     Tolerance(String),
+    /// What stands as a fit is none, or none of this diameter: as typed, and why.
+    Fit(String, FitError),
 }
 
 impl Quantity {
@@ -463,11 +472,12 @@ impl Quantity {
     fn parse_nominal(text: &str, dimension: Dimension) -> Result<Self, QuantityError> {
         let (digits, unit_text) = split_number(text)?;
         if dimension == Dimension::Length
-            && let Some((unit, fit)) = unit_text.rsplit_once(char::is_whitespace)
-            && let Some(tolerance) = parse_fit(fit)
+            && let Some((unit, word)) = unit_text.rsplit_once(char::is_whitespace)
+            && Fit::looks_like(word)
         {
             let mut quantity = Self::build(digits, unit, dimension)?;
-            quantity.tolerance = Some(tolerance);
+            let found = Fit::parse(word).and_then(|fit| fit.deviations_m(quantity.si).map(|_| fit));
+            quantity.tolerance = Some(Tolerance::Fit(found.map_err(|why| QuantityError::Fit(word.to_owned(), why))?));
             return Ok(quantity);
         }
         Self::build(digits, unit_text, dimension)
@@ -490,17 +500,31 @@ impl Quantity {
         Ok(Self { si: si + 0.0, unit, tolerance: None })
     }
 
+    /// Reads a number that stands without its unit, such as a cell of a column.
+    ///
+    /// # Errors
+    /// [`QuantityError`]: no number, or something behind it.
+    pub fn parse_in(text: &str, unit: &Unit) -> Result<Self, QuantityError> {
+        let normal = text.trim().replace('−', "-");
+        let (digits, rest) = split_number(&normal)?;
+        if !rest.is_empty() {
+            return Err(QuantityError::NotANumber);
+        }
+        let si = unit.decimal_to_si(digits).ok_or(QuantityError::NotANumber)?;
+        if !si.is_finite() {
+            return Err(QuantityError::NotFinite);
+        }
+        Ok(Self { si: si + 0.0, unit: unit.clone(), tolerance: None })
+    }
+
     /// The value in the unit typed, without unit.
     pub fn value(&self) -> f64 {
         self.unit.from_si(self.si)
     }
 
-    /// Half width of a `±` tolerance in SI, if there is one.
-    pub fn half_width_si(&self) -> Option<f64> {
-        match self.tolerance {
-            Some(Tolerance::Symmetric(half)) => Some(half),
-            _ => None,
-        }
+    /// Lower and upper deviation that the tolerance allows, SI, if there is one.
+    pub fn deviations_si(&self) -> Option<[f64; 2]> {
+        self.tolerance?.deviations_si(self.si)
     }
 }
 
@@ -511,22 +535,13 @@ impl fmt::Display for Quantity {
         match &self.tolerance {
             None => Ok(()),
             Some(Tolerance::Symmetric(half)) => write!(f, " ± {}", format_si(*half, &self.unit, 12)),
-            Some(Tolerance::Fit { letters, grade }) => write!(f, " {letters}{grade}"),
+            Some(Tolerance::Fit(fit)) => write!(f, " {fit}"),
         }
     }
 }
 
 fn tolerance_error(text: &str) -> QuantityError {
     QuantityError::Tolerance(text.trim().to_owned())
-}
-
-/// `h7`, `H7`, `js6`: letters and grade 1 to 18.
-fn parse_fit(text: &str) -> Option<Tolerance> {
-    let digits = text.find(|c: char| c.is_ascii_digit())?;
-    let (letters, grade) = text.split_at(digits);
-    let grade = grade.parse::<u8>().ok().filter(|g| (1..=18).contains(g))?;
-    let known = (1..=2).contains(&letters.len()) && letters.chars().all(|c| c.is_ascii_alphabetic());
-    known.then(|| Tolerance::Fit { letters: letters.to_owned(), grade })
 }
 
 /// Splits leading decimal digits from the unit that follows.

@@ -11,7 +11,7 @@ pub const CODES: &[Explanation] = &[
     code(
         "E0101",
         "a file cannot be read",
-        "The file does not exist, or the system refuses to read it. Exit code 4.\n\nPaths in `extends` are relative to the file that names them.",
+        "The file does not exist, or the system refuses to read it. Exit code 4.\n\nPaths in `extends` and of files of data (`target_file = \"wanted.csv\"`) are relative to the file that names them.",
     ),
     code(
         "E0102",
@@ -55,6 +55,11 @@ pub const CODES: &[Explanation] = &[
         "`--set KEY=VALUE` replaces one value for this run. KEY is the dotted path of the project file, members of lists by name:\n\n    --set design.thickness=\"0.9 mm\"\n    --set design.beams.b1.bend=\"[1.2, -1.5]\"\n\nA single number of a list or a point is named by its place, counted from 1, or by `x` and `y`:\n\n    --set design.beams.b1.bend.2=-1.5\n    --set design.nodes.n3.at.x=\"30 mm\"\n\nThe value is read as in the file; quotes that the shell takes away do no harm.",
     ),
     code(
+        "E0112",
+        "a table of data is not understood",
+        "Data that a project names stands in a CSV file:\n\n    # measured on the bench\n    travel / mm, force / N\n    2.0, 5.1\n    4.0, 7.3\n\nThe first line that is no comment names the columns, each with its unit behind `/`. Below it stand numbers with decimal points, as many in each line as the header has columns. Columns are separated by commas, or by semicolons where the header has one. The message names line and column in the file.",
+    ),
+    code(
         "E0201",
         "wrong quantity",
         "The unit is known, but it is the unit of something else: a force where a length is needed, a torque where an energy is needed (N·m and J are kept apart on purpose).",
@@ -89,6 +94,11 @@ pub const CODES: &[Explanation] = &[
         "E0208",
         "unit missing",
         "Every number with a dimension carries its unit, in quotes: `thickness = \"1 mm\"`. Bare numbers are dimensionless. So nobody has to guess.",
+    ),
+    code(
+        "E0209",
+        "not an ISO 286 fit",
+        "A fit is a position and a grade of ISO 286-1: `h7`, `js6`, `JS9`; capitals are positions of holes, small letters of shafts. Positions from `a` to `zc` (without `cd`, `ef`, `fg`) and grades 01, 0 and 1 to 18 are known for diameters up to 500 mm. Not every position exists at every diameter and with every grade: `t6` begins above 24 mm, `J9` does not exist.\n\nThe fit stands behind the nominal diameter: `17.6 mm h7` is made between 17.582 mm and 17.6 mm. An analysis takes the nominal diameter; a tolerance study scatters about the middle of the zone. Where no fit says what is meant, write a half width: `17.591 mm ± 0.009 mm`.",
     ),
     code(
         "E0301",
@@ -148,6 +158,11 @@ pub const CODES: &[Explanation] = &[
         "E0318",
         "the result cannot be written into the file",
         "The design found is written into a copy of the project file, with its comments, each number in its own unit. One of the numbers has no place there: the message names its path, and something else, such as a text or a list of another shape, stands where it would go. Write that part of the design as the examples do.",
+    ),
+    code(
+        "E0320",
+        "a fit of a number that is no diameter",
+        "ISO 286 fits such as `h7` are deviations of diameters of shafts and holes. The parameter is another length, for which a fit would be a guess. Write the half width: `17.6 mm ± 0.009 mm`.",
     ),
     code(
         "W0101",

@@ -20,6 +20,7 @@ use forcewright_model::{CheckState, Figure, Outcome, ParameterRow, StatusKind};
 use serde_json::Value as Json;
 
 use crate::codes;
+use crate::data::{DataFile, names_a_file};
 use crate::describe::{Along, Describe, Form, Located, Members, Param, Range, Reserved, Slot, Visitor, Word, member_path};
 use crate::family::{Entry, Family, Mechanism};
 use crate::project::{Choices, Project};
@@ -122,11 +123,13 @@ fn description<M: Mechanism>() {
 struct Words;
 
 fn sane(param: &Param) {
-    let Param { key, doc, range, default, required, .. } = *param;
+    let Param { key, doc, range, default, required, diameter, .. } = *param;
     assert!(!key.is_empty() && key.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_'), "`{key}` is no plain key");
     assert!(doc.ends_with('.') && doc.len() > 4, "`{key}` needs a sentence: `{doc}`");
     assert!(range.min <= range.max && !(range.above && range.min >= range.max), "the range of `{key}` is empty");
     assert!(!(required && default.is_some()), "`{key}` is required and has a default");
+    assert!(!names_a_file(key), "`{key}` looks like the path of a file");
+    assert!(!diameter || param.dimension == Dimension::Length, "`{key}` is a diameter and no length");
 }
 
 fn no_default(param: &Param) {
@@ -170,6 +173,9 @@ impl Visitor for Words {
     }
     fn text(&mut self, param: &Param, _: &mut Slot<String>) {
         sane(param);
+    }
+    fn file(&mut self, param: &Param, _: &mut Slot<DataFile>) {
+        assert!(!param.doc.is_empty() && names_a_file(param.key), "`{}` is a file: its key ends in `_file`", param.key);
     }
     fn flag(&mut self, param: &Param, _: &mut Slot<bool>) {
         sane(param);
@@ -618,6 +624,7 @@ impl Visitor for Numbers {
     fn deferred(&mut self, _: &Param, _: &mut Slot<Value>) {}
     fn direction(&mut self, _: &Param, _: &mut Slot<[f64; 2]>) {}
     fn text(&mut self, _: &Param, _: &mut Slot<String>) {}
+    fn file(&mut self, _: &Param, _: &mut Slot<DataFile>) {}
     fn flag(&mut self, _: &Param, _: &mut Slot<bool>) {}
     fn choice(&mut self, _: &Param, _: &'static [Word], _: &mut Slot<&'static str>) {}
     fn names(&mut self, _: &Param, _: usize, _: usize, _: &mut Slot<Vec<Located<String>>>) {}

@@ -4,6 +4,7 @@
 use forcewright_base::diagnostics::Span;
 use forcewright_base::units::{Dimension, Quantity};
 
+use crate::data::DataFile;
 use crate::tree::Value;
 
 /// Where a value comes from.
@@ -75,18 +76,26 @@ pub struct Param {
     pub required: bool,
     /// Default, written as in the file.
     pub default: Option<&'static str>,
+    /// Whether it is the diameter of a shaft or a hole, which takes an ISO 286 fit.
+    pub diameter: bool,
 }
 
 impl Param {
     /// A dimensionless parameter; the methods say the rest.
     pub const fn new(key: &'static str, doc: &'static str) -> Self {
-        Self { key, doc, dimension: Dimension::Ratio, range: Range::ANY, required: false, default: None }
+        Self { key, doc, dimension: Dimension::Ratio, range: Range::ANY, required: false, default: None, diameter: false }
     }
 
     /// Its quantity.
     pub const fn of(mut self, dimension: Dimension) -> Self {
         self.dimension = dimension;
         self
+    }
+
+    /// It is the diameter of a shaft or a hole: a length that takes an ISO 286 fit, `"17.6 mm h7"`.
+    pub const fn diameter(mut self) -> Self {
+        self.diameter = true;
+        self.of(Dimension::Length)
     }
 
     /// It must be above `min` and at most `max`, SI.
@@ -201,6 +210,8 @@ pub trait Visitor {
     fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>);
     /// Free text.
     fn text(&mut self, param: &Param, slot: &mut Slot<String>);
+    /// The path of a file beside the project, whose key is `file` or ends in `_file` ([`crate::data::names_a_file`]).
+    fn file(&mut self, param: &Param, slot: &mut Slot<DataFile>);
     /// `true` or `false`.
     fn flag(&mut self, param: &Param, slot: &mut Slot<bool>);
     /// One word of a closed set.

@@ -68,7 +68,7 @@ fn written(number: &Number, si: f64) -> Value {
     Value::from(match &number.tolerance {
         None => text,
         Some(Tolerance::Symmetric(half)) => format!("{text} ± {}", format_si(*half, &number.unit, TOLERANCE_DIGITS)),
-        Some(Tolerance::Fit { letters, grade }) => format!("{text} {letters}{grade}"),
+        Some(Tolerance::Fit(fit)) => format!("{text} {fit}"),
     })
 }
 

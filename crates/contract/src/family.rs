@@ -11,7 +11,7 @@ use forcewright_study::task::Task;
 use crate::describe::Describe;
 use crate::numbers::{Number, numbers_of};
 use crate::project::Project;
-use crate::studies::{Free, Studies};
+use crate::studies::{Free, Purpose, Studies};
 use crate::{paths, read, schema};
 
 /// Called with the finished fraction of the work; returns whether to go on.
@@ -44,7 +44,7 @@ pub trait Mechanism: Sync + 'static {
     fn evaluator(spec: &Self::Spec, design: &Self::Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>>;
 
     /// The search that `[optimise]` asks for, over some numbers. What cannot vary, or is no objective, goes into `diagnostics`.
-    fn task(spec: &Self::Spec, design: &Self::Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task>;
+    fn task(spec: &Self::Spec, design: &Self::Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task>;
 
     /// Codes of this family: its errors and its checks.
     fn explanations() -> &'static [Explanation];
@@ -137,7 +137,7 @@ pub trait Understood {
     /// See [`Mechanism::evaluator`].
     fn evaluator(&self, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>>;
     /// See [`Mechanism::task`].
-    fn task(&self, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task>;
+    fn task(&self, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task>;
 }
 
 /// Makes a [`Family`] of a [`Mechanism`].
@@ -179,8 +179,8 @@ impl<M: Mechanism> Understood for Ready<M> {
         M::evaluator(&self.spec, &self.design, free, diagnostics)
     }
 
-    fn task(&self, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task> {
-        M::task(&self.spec, &self.design, free, diagnostics)
+    fn task(&self, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
+        M::task(&self.spec, &self.design, free, purpose, diagnostics)
     }
 }
 
@@ -208,6 +208,8 @@ impl<M: Mechanism> Family for Entry<M> {
     fn understand(&self, project: &mut Project) -> Option<Box<dyn Understood>> {
         let mut spec: M::Spec = read::read(&project.tree, project.root, &mut project.diagnostics);
         let design = M::resolve(&mut spec, &mut project.diagnostics);
+        // A file of data that is not there is as one that `extends` names.
+        project.file_missing |= project.diagnostics.in_file_order().iter().any(|d| d.code == "E0101" || d.code == "E0104");
         if project.diagnostics.has_errors() {
             return None;
         }

@@ -4,6 +4,7 @@
 pub mod codes;
 #[cfg(feature = "conformance")]
 pub mod conformance;
+pub mod data;
 pub mod describe;
 pub mod edit;
 pub mod family;

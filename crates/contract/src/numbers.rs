@@ -6,6 +6,7 @@
 use forcewright_base::diagnostics::Span;
 use forcewright_base::units::{Dimension, Quantity, Tolerance, Unit};
 
+use crate::data::DataFile;
 use crate::describe::{Along, Describe, Form, Located, Members, Param, Range, Reserved, Slot, Visitor, Word, member_path};
 use crate::tree::Value;
 
@@ -20,7 +21,7 @@ pub struct Number {
     pub unit: Unit,
     /// Its value, SI.
     pub si: f64,
-    /// Values that the language allows, SI.
+    /// Values that the language allows, SI; with a fit, diameters for which it is defined.
     pub range: Range,
     /// The tolerance typed, if any.
     pub tolerance: Option<Tolerance>,
@@ -53,6 +54,17 @@ impl Part {
             Self::Entry(_) | Self::Coordinate(_) | Self::AtPlace(..) => 1,
             Self::OfPoints(..) => 2,
         }
+    }
+}
+
+/// The values that a number may have without losing the fit that it was typed with.
+fn allowed(range: Range, tolerance: Option<Tolerance>) -> Range {
+    match tolerance {
+        Some(Tolerance::Fit(fit)) => fit.diameters_m().map_or(range, |[above, up_to]| {
+            let low = if above >= range.min { Range { min: above, above: true, ..range } } else { range };
+            Range { max: range.max.min(up_to), ..low }
+        }),
+        _ => range,
     }
 }
 
@@ -95,8 +107,8 @@ impl Collector {
             dimension: param.dimension,
             unit: quantity.unit.clone(),
             si: quantity.si,
-            range: param.range,
-            tolerance: quantity.tolerance.clone(),
+            range: allowed(param.range, quantity.tolerance),
+            tolerance: quantity.tolerance,
             span,
             part,
         });
@@ -152,6 +164,7 @@ impl Visitor for Collector {
     fn deferred(&mut self, _: &Param, _: &mut Slot<Value>) {}
     fn direction(&mut self, _: &Param, _: &mut Slot<[f64; 2]>) {}
     fn text(&mut self, _: &Param, _: &mut Slot<String>) {}
+    fn file(&mut self, _: &Param, _: &mut Slot<DataFile>) {}
     fn flag(&mut self, _: &Param, _: &mut Slot<bool>) {}
     fn choice(&mut self, _: &Param, _: &'static [Word], _: &mut Slot<&'static str>) {}
     fn names(&mut self, _: &Param, _: usize, _: usize, _: &mut Slot<Vec<Located<String>>>) {}

@@ -3,6 +3,7 @@
 use forcewright_base::units::Quantity;
 use forcewright_model::ParameterRow;
 
+use crate::data::DataFile;
 use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word, member_path};
 use crate::tree::Value;
 
@@ -65,6 +66,9 @@ impl Visitor for Keys {
         self.note(param);
     }
     fn text(&mut self, param: &Param, _: &mut Slot<String>) {
+        self.note(param);
+    }
+    fn file(&mut self, param: &Param, _: &mut Slot<DataFile>) {
         self.note(param);
     }
     fn flag(&mut self, param: &Param, _: &mut Slot<bool>) {
@@ -157,6 +161,9 @@ impl Visitor for Rows {
     }
     fn text(&mut self, param: &Param, slot: &mut Slot<String>) {
         self.note(param, slot.as_ref(), Clone::clone);
+    }
+    fn file(&mut self, param: &Param, slot: &mut Slot<DataFile>) {
+        self.note(param, slot.as_ref(), ToString::to_string);
     }
     fn flag(&mut self, param: &Param, slot: &mut Slot<bool>) {
         self.note(param, slot.as_ref(), ToString::to_string);

@@ -1,5 +1,7 @@
-//! Reading a project: the file, what it extends, the chosen variant, the settings of the command line; one tree comes out.
+//! Reading a project: the file, what it extends, the chosen variant, the settings of the command line, the files that it names; one
+//! tree comes out.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
@@ -7,12 +9,15 @@ use std::path::{Component, Path, PathBuf};
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, SourceId, Sources, Span};
 use forcewright_base::text::closest;
 
+use crate::data::{Content, DataFile, names_a_file};
 use crate::tree::{self, Entry, Item, Table, Value};
 
 /// Largest file accepted. Real project files have a few kilobytes.
 const LARGEST_BYTES: u64 = 1024 * 1024;
 /// Longest chain of `extends`.
 const LONGEST_CHAIN: usize = 16;
+/// Most files of data that a project names.
+const MOST_FILES: usize = 64;
 
 /// Why a file could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,6 +32,24 @@ pub enum FileError {
     NotUtf8(usize),
     /// The system's words.
     Unreadable(String),
+}
+
+impl FileError {
+    /// Whether there is nothing to read at all, as opposed to something that is not understood.
+    fn is_missing(&self) -> bool {
+        matches!(self, Self::NotFound | Self::NotAFile | Self::Unreadable(_))
+    }
+
+    /// Code and message for a file.
+    pub(crate) fn refusal(&self, shown: &str) -> (&'static str, String) {
+        match self {
+            Self::NotFound => ("E0101", format!("`{shown}` does not exist")),
+            Self::NotAFile => ("E0104", format!("`{shown}` is not a file")),
+            Self::Unreadable(why) => ("E0101", format!("`{shown}` cannot be read: {why}")),
+            Self::TooLarge(bytes) => ("E0103", format!("`{shown}` has {bytes} bytes; at most {LARGEST_BYTES} are accepted")),
+            Self::NotUtf8(good) => ("E0102", format!("`{shown}` is not UTF-8 text: byte {} is not", good + 1)),
+        }
+    }
 }
 
 /// Where files come from: the disk, or memory in tests and for the gallery.
@@ -97,8 +120,15 @@ pub struct Project {
 impl Project {
     /// Reads a project file with everything that belongs to it. Whatever is wrong is in `diagnostics`.
     pub fn load(files: &dyn Files, path: &Path, choices: &Choices) -> Self {
-        let mut loader =
-            Loader { files, sources: Sources::default(), diagnostics: Diagnostics::default(), chain: Vec::new(), file_missing: false };
+        let mut loader = Loader {
+            files,
+            sources: Sources::default(),
+            diagnostics: Diagnostics::default(),
+            chain: Vec::new(),
+            folders: Vec::new(),
+            data: BTreeMap::new(),
+            file_missing: false,
+        };
         let mut tree = loader.file(path, None);
         let root_span = Span::default();
         let variants = loader.variants(&mut tree, choices);
@@ -108,6 +138,7 @@ impl Project {
         }
         loader.misplaced(&mut tree, "`--set`");
         loader.mechanism(&tree);
+        loader.read_data(&mut tree);
         Self {
             sources: loader.sources,
             tree,
@@ -149,6 +180,10 @@ struct Loader<'a> {
     sources: Sources,
     diagnostics: Diagnostics,
     chain: Vec<PathBuf>,
+    /// The folder of each project file read, the first one's first.
+    folders: Vec<(SourceId, PathBuf)>,
+    /// Files of data by their paths.
+    data: BTreeMap<PathBuf, Result<Content, FileError>>,
     file_missing: bool,
 }
 
@@ -183,6 +218,7 @@ impl Loader<'_> {
         };
         let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
         let source = self.sources.add(shown, text.as_str());
+        self.folders.push((source, path.parent().unwrap_or(Path::new("")).to_owned()));
         let mut tree = tree::parse(&text, source, &mut self.diagnostics);
         let Some(Entry { item, .. }) = tree.take("extends") else { return tree };
         let Item { value: Value::Text(base), span } = item else {
@@ -199,27 +235,52 @@ impl Loader<'_> {
         merged
     }
 
+    /// Reads the files that keys name, each beside the project file that names it; one that a setting names, beside the first.
+    fn read_data(&mut self, table: &mut Table) {
+        for Entry { key, item, .. } in &mut table.entries {
+            match &mut item.value {
+                Value::Text(path) if names_a_file(key) => {
+                    let own = self.folders.iter().find(|(source, _)| *source == item.span.source).or(self.folders.first());
+                    let beside = own.map_or_else(PathBuf::new, |(_, folder)| folder.clone()).join(&*path);
+                    item.value = Value::File(DataFile { path: std::mem::take(path), content: self.content(&beside) });
+                }
+                Value::Table(inner) => self.read_data(inner),
+                Value::List(items) => items.iter_mut().for_each(|item| {
+                    if let Value::Table(inner) = &mut item.value {
+                        self.read_data(inner);
+                    }
+                }),
+                _ => {}
+            }
+        }
+    }
+
+    fn content(&mut self, path: &Path) -> Result<Content, FileError> {
+        if let Some(known) = self.data.get(path) {
+            return known.clone();
+        }
+        if self.data.len() >= MOST_FILES {
+            return Err(FileError::Unreadable(format!("the project names more than {MOST_FILES} files")));
+        }
+        let content = self.files.read(path).map(|text| {
+            let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+            let source = self.sources.add(path.display().to_string(), text);
+            Content { source, text: text.into() }
+        });
+        self.data.insert(path.to_owned(), content.clone());
+        content
+    }
+
     fn unreadable(&mut self, shown: &str, error: &FileError, from: Option<Span>) {
-        let (code, message, help) = match error {
-            FileError::NotFound => (
-                "E0101",
-                format!("`{shown}` does not exist"),
-                "check the path; `forcewright new --list` names examples to start from".to_owned(),
-            ),
-            FileError::NotAFile => ("E0104", format!("`{shown}` is not a file"), "name a project file, such as `design.toml`".to_owned()),
-            FileError::Unreadable(why) => {
-                ("E0101", format!("`{shown}` cannot be read: {why}"), "check that it is readable for you".to_owned())
-            }
-            FileError::TooLarge(bytes) => (
-                "E0103",
-                format!("`{shown}` has {bytes} bytes; at most {LARGEST_BYTES} are accepted"),
-                "a project file has a few kilobytes; measured data belongs into CSV files".to_owned(),
-            ),
-            FileError::NotUtf8(good) => {
-                ("E0102", format!("`{shown}` is not UTF-8 text: byte {} is not", good + 1), "save it as UTF-8".to_owned())
-            }
+        let (code, message) = error.refusal(shown);
+        let help = match error {
+            FileError::NotFound => "check the path; `forcewright new --list` names examples to start from",
+            FileError::NotAFile => "name a project file, such as `design.toml`",
+            FileError::Unreadable(_) => "check that it is readable for you",
+            FileError::TooLarge(_) => "a project file has a few kilobytes; measured data belongs into CSV files",
+            FileError::NotUtf8(_) => "save it as UTF-8",
         };
-        self.file_missing |= matches!(error, FileError::NotFound | FileError::NotAFile | FileError::Unreadable(_));
+        self.file_missing |= error.is_missing();
         let diagnostic = match from {
             Some(span) => Diagnostic::error(code, span, message).label("named here"),
             None => Diagnostic::placeless(code, message),

@@ -2,10 +2,12 @@
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, MOST_SHOWN, Span};
 use forcewright_base::text::closest;
-use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit, format_number, format_si};
+use forcewright_base::units::{Dimension, Quantity, QuantityError, Tolerance, Unit, format_number, format_si};
 
+use crate::data::DataFile;
 use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word};
 use crate::paths;
+use crate::project::FileError;
 use crate::tree::{Entry, Item, Table, Value};
 
 /// Most members of a collection, and most numbers of a list: far above any mechanism, far below what exhausts a machine.
@@ -211,7 +213,7 @@ fn wrong_type(item: &Item, wanted: &str, example: &str) -> Box<Diagnostic> {
 fn quantity_of(param: &Param, item: &Item) -> Result<Quantity, Box<Diagnostic>> {
     let dimension = param.dimension;
     let quantity = match &item.value {
-        Value::Text(text) => Quantity::parse(text, dimension).map_err(|e| Box::new(quantity_error(&e, text, item.span, dimension)))?,
+        Value::Text(text) => Quantity::parse(text, dimension).map_err(|e| Box::new(quantity_error(&e, text, item.span, param)))?,
         Value::Number(value) if dimension == Dimension::Ratio => Quantity::from_si(*value, dimension),
         Value::Number(value) => {
             return Err(Box::new(
@@ -227,14 +229,19 @@ fn quantity_of(param: &Param, item: &Item) -> Result<Quantity, Box<Diagnostic>> 
         _ => return Err(wrong_type(item, dimension.name(), &format!("a text such as \"{}\"", dimension.example()))),
     };
     check_range(param, quantity.si, &quantity.unit, item.span)?;
-    if let Some(half) = quantity.half_width_si()
-        && !(param.range.holds(quantity.si - half) && param.range.holds(quantity.si + half))
-    {
-        return Err(Box::new(
-            Diagnostic::error("E0207", item.span, format!("within its tolerance, `{}` leaves the values that it may have", param.key))
-                .label("too wide")
-                .help("write a smaller half width"),
-        ));
+    if let Some(deviations) = quantity.deviations_si() {
+        if matches!(quantity.tolerance, Some(Tolerance::Fit(_))) && !param.diameter {
+            let half = format_si(0.5 * (deviations[1] - deviations[0]), &quantity.unit, 4);
+            let plain = Quantity { tolerance: None, ..quantity };
+            return Err(Box::new(no_diameter(param, item.span, &format!("\"{plain} ± {half}\""))));
+        }
+        if !deviations.iter().all(|deviation| param.range.holds(quantity.si + deviation)) {
+            return Err(Box::new(
+                Diagnostic::error("E0207", item.span, format!("within its tolerance, `{}` leaves the values that it may have", param.key))
+                    .label("too wide")
+                    .help(if param.diameter { "write a smaller half width, or a finer grade" } else { "write a smaller half width" }),
+            ));
+        }
     }
     Ok(quantity)
 }
@@ -244,7 +251,15 @@ fn default_unit(dimension: Dimension) -> &'static str {
     dimension.example().split_once(' ').map_or("", |(_, unit)| unit)
 }
 
-fn quantity_error(error: &QuantityError, text: &str, span: Span, dimension: Dimension) -> Diagnostic {
+/// A fit where none has a meaning; `instead` is what could be written.
+fn no_diameter(param: &Param, span: Span, instead: &str) -> Diagnostic {
+    Diagnostic::error("E0320", span, format!("`{}` has a fit, but is not the diameter of a shaft or hole", param.key))
+        .label("this fit")
+        .help(format!("a fit needs a diameter; write a half width, such as {instead}"))
+}
+
+fn quantity_error(error: &QuantityError, text: &str, span: Span, param: &Param) -> Diagnostic {
+    let dimension = param.dimension;
     let example = format!("write {} such as \"{}\" ({})", dimension.name(), dimension.example(), dimension.accepted());
     let at = |code, message: String, label: String| Diagnostic::error(code, span, message).label(label);
     let shown = shorten(text);
@@ -276,6 +291,11 @@ fn quantity_error(error: &QuantityError, text: &str, span: Span, dimension: Dime
         .help(example),
         QuantityError::Tolerance(part) => at("E0207", format!("`{}` is not a tolerance", shorten(part)), "after the ±".to_owned())
             .help(format!("write a positive half width: \"{} ± 0.02 {}\", or \"± 2 %\"", dimension.example(), default_unit(dimension))),
+        QuantityError::Fit(..) if !param.diameter => no_diameter(param, span, "\"10 mm ± 0.02 mm\""),
+        QuantityError::Fit(word, why) => {
+            at("E0209", format!("`{}` is no fit of this diameter: {why}", shorten(word)), "this fit".to_owned())
+                .help("write a fit such as `h7` for a shaft, `H7` for a hole, or a half width, \"± 0.02 mm\"")
+        }
     }
 }
 
@@ -326,6 +346,17 @@ pub fn deferred_quantities(slot: &Located<Value>, dimension: Dimension, diagnost
         }
     }
     Some(found)
+}
+
+/// A file of data that is not there, or no text.
+fn unreadable(error: &FileError, file: &DataFile, span: Span) -> Diagnostic {
+    let (code, message) = error.refusal(&shorten(&file.path));
+    let help = match error {
+        FileError::TooLarge(_) => "leave out rows: a curve needs a few hundred at most",
+        FileError::NotUtf8(_) => "save it as UTF-8",
+        _ => "paths start at the folder of the file that names them; with `--set`, at that of the project file",
+    };
+    Diagnostic::error(code, span, message).label("named here").help(help)
 }
 
 fn list_of<'i>(item: &'i Item, wanted: &str, example: &str) -> Result<&'i [Item], Box<Diagnostic>> {
@@ -452,6 +483,13 @@ impl Visitor for Reader<'_> {
         self.fill(param, slot, |item| match &item.value {
             Value::Text(text) => Ok(text.clone()),
             _ => Err(wrong_type(item, "a text", "a text in quotes")),
+        });
+    }
+
+    fn file(&mut self, param: &Param, slot: &mut Slot<DataFile>) {
+        self.fill(param, slot, |item| match &item.value {
+            Value::File(file) => file.content.as_ref().map(|_| file.clone()).map_err(|e| Box::new(unreadable(e, file, item.span))),
+            _ => Err(wrong_type(item, "the path of a file", "a text in quotes, such as \"data.csv\"")),
         });
     }
 

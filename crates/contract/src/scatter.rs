@@ -1,7 +1,6 @@
 //! From `±` and `[tolerance]` to the joint distribution of a design's numbers.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Explanation, Span};
-use forcewright_base::units::Tolerance as Typed;
 use forcewright_study::sampling::{Correlation, Distribution, Form, Population};
 
 use crate::numbers::Number;
@@ -21,14 +20,9 @@ pub const CODES: &[Explanation] = &[
         text: "A tolerance study draws designs from the scatter of their numbers, and this file gives none. Write a `±` behind a quantity of the design or its material:\n\n    thickness = \"1 mm ± 0.02 mm\"\n\nor name numbers, by their paths or patterns of paths, in the section of the study:\n\n    [tolerance.parameters]\n    \"design.nodes.*.at\" = { half_width = \"0.05 mm\" }\n    \"design.beams.*.bend\" = { half_width = 0.01 }",
     },
     Explanation {
-        code: "E0320",
-        title: "a fit of a number that is no diameter",
-        text: "ISO 286 fits such as `h7` are deviations of diameters of shafts and holes. They come with the families that have diameters; here they would be guesses. Write the half width: `17.6 mm ± 0.009 mm`.",
-    },
-    Explanation {
         code: "E0321",
         title: "no half width",
-        text: "A parameter of `[tolerance.parameters]` takes its half width from `half_width`, or, without it, from the `±` behind the number. This number has neither, or `half_width` is not one value that is not negative.",
+        text: "A parameter of `[tolerance.parameters]` takes its half width from `half_width`, or, without it, from the `±` or the fit behind the number. This number has none of them, or `half_width` is not one value that is not negative.",
     },
     Explanation {
         code: "E0322",
@@ -51,15 +45,15 @@ pub struct Scattering {
     pub population: Population,
 }
 
-/// A number that scatters: its half width and the form of its distribution.
+/// A number that scatters: lower and upper deviation from its nominal value, and the form of its distribution between them.
 #[derive(Clone, Copy)]
 struct Own {
-    half_width: f64,
+    deviations: [f64; 2],
     form: Form,
 }
 
 impl Tolerance {
-    /// The numbers that scatter, in the order of the design: those with a `±`, and those that the section names, whose words win. `place`
+    /// The numbers that scatter, in the order of the design: those with a `±` or a fit, and those that the section names, whose words win. `place`
     /// is pointed at where there are none. `None` after an error.
     pub fn scattering(&self, numbers: &[Number], place: Span, diagnostics: &mut Diagnostics) -> Option<Scattering> {
         let before = diagnostics.errors();
@@ -69,19 +63,6 @@ impl Tolerance {
             for index in chosen(&member.name, &ROOTS, numbers, diagnostics) {
                 let own = member.value.own(&numbers[index], form, member.name.span, diagnostics);
                 found[index] = own.or(found[index]);
-            }
-        }
-        for (number, own) in numbers.iter().zip(&found) {
-            if own.is_none() && matches!(number.tolerance, Some(Typed::Fit { .. })) && rooted(number) {
-                diagnostics.push(
-                    Diagnostic::error(
-                        "E0320",
-                        number.span,
-                        format!("`{}` has a fit, but is not the diameter of a shaft or hole", number.path),
-                    )
-                    .label("this fit")
-                    .help("write its half width with `±`; fits come with the families that have diameters"),
-                );
             }
         }
         let scattering: Vec<usize> = (0..numbers.len()).filter(|i| found[*i].is_some()).collect();
@@ -104,7 +85,8 @@ impl Tolerance {
         }
         let marginals = scattering.iter().filter_map(|i| {
             let own = found[*i]?;
-            Distribution::from_tolerance(numbers[*i].si, own.half_width, own.form).ok()
+            let [lower, upper] = own.deviations;
+            Distribution::from_deviations(numbers[*i].si, lower, upper, own.form).ok()
         });
         let free = |i: &usize| Free { number: numbers[*i].clone(), lower: numbers[*i].range.min, upper: numbers[*i].range.max };
         let population = self.grouped(Population::independent(marginals.collect()), &scattering, numbers, diagnostics);
@@ -167,7 +149,7 @@ impl Scatter {
             return None;
         };
         match deferred_quantities(slot, number.dimension, diagnostics)?[..] {
-            [half_width] if half_width >= 0.0 => Some(Own { half_width, form }),
+            [half_width] if half_width >= 0.0 => Some(Own { deviations: [-half_width, half_width], form }),
             _ => {
                 diagnostics.push(
                     Diagnostic::error("E0321", slot.span, "a half width is one value that is not negative")
@@ -180,12 +162,10 @@ impl Scatter {
     }
 }
 
-/// How a number scatters by its own `±`.
+/// How a number scatters by its own `±` or fit: about the middle of the zone, which need not be the nominal value.
 fn typed(number: &Number, form: Form) -> Option<Own> {
-    match number.tolerance {
-        Some(Typed::Symmetric(half_width)) if rooted(number) => Some(Own { half_width, form }),
-        _ => None,
-    }
+    let deviations = number.tolerance?.deviations_si(number.si)?;
+    rooted(number).then_some(Own { deviations, form })
 }
 
 fn rooted(number: &Number) -> bool {

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use forcewright_base::units::{Dimension, Quantity, Unit, format_si};
 use serde_json::{Map, Value, json};
 
+use crate::data::DataFile;
 use crate::describe::{Along, Describe, Form, Located, Members, Param, Reserved, Slot, Visitor, Word};
 use crate::tree;
 
@@ -66,6 +67,8 @@ impl Schema {
     }
 }
 
+/// A diameter with a fit.
+const FITTED: &str = "17.6 mm h7";
 /// A number, then anything: units are checked by the program, which can say what is wrong with them.
 const NUMBER_THEN_UNIT: &str = r"^\s*[-+−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*\S";
 const NUMBER_MAYBE_UNIT: &str = r"^\s*[-+−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?";
@@ -74,7 +77,9 @@ fn quantity_schema(param: &Param) -> Value {
     if param.dimension == Dimension::Ratio {
         return json!({ "anyOf": [number_schema(param), { "type": "string", "pattern": NUMBER_MAYBE_UNIT }] });
     }
-    json!({ "type": "string", "pattern": NUMBER_THEN_UNIT, "examples": [param.dimension.example()] })
+    let mut examples = vec![param.dimension.example()];
+    examples.extend(param.diameter.then_some(FITTED));
+    json!({ "type": "string", "pattern": NUMBER_THEN_UNIT, "examples": examples })
 }
 
 fn number_schema(param: &Param) -> Value {
@@ -122,6 +127,9 @@ impl Visitor for Schema {
     }
     fn text(&mut self, param: &Param, _: &mut Slot<String>) {
         self.add(param, json!({ "type": "string" }));
+    }
+    fn file(&mut self, param: &Param, _: &mut Slot<DataFile>) {
+        self.add(param, json!({ "type": "string", "examples": ["data.csv"] }));
     }
     fn flag(&mut self, param: &Param, _: &mut Slot<bool>) {
         self.add(param, json!({ "type": "boolean" }));
@@ -204,7 +212,8 @@ fn range_text(param: &Param) -> String {
 
 impl Visitor for Listing {
     fn quantity(&mut self, param: &Param, _: &mut Slot<Quantity>) {
-        let takes = format!("{}, `\"{}\"`", param.dimension.name(), param.dimension.example());
+        let fit = if param.diameter { format!(", or with a fit of ISO 286, `\"{FITTED}\"`") } else { String::new() };
+        let takes = format!("{}, `\"{}\"`{fit}", param.dimension.name(), param.dimension.example());
         self.row(param, &takes);
     }
     fn count(&mut self, param: &Param, _: &mut Slot<u32>) {
@@ -235,6 +244,9 @@ impl Visitor for Listing {
     }
     fn text(&mut self, param: &Param, _: &mut Slot<String>) {
         self.row(param, "a text");
+    }
+    fn file(&mut self, param: &Param, _: &mut Slot<DataFile>) {
+        self.row(param, "the path of a file, from the folder of this one");
     }
     fn flag(&mut self, param: &Param, _: &mut Slot<bool>) {
         self.row(param, "`true` or `false`");

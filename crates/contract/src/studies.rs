@@ -4,6 +4,7 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::text::closest;
 use forcewright_base::units::Quantity;
 
+use crate::data::DataFile;
 use crate::describe::{Describe, Form, Located, Member, Param, Section, Slot, Visitor, Word};
 use crate::numbers::{Number, matches};
 use crate::read::deferred_quantities;
@@ -31,6 +32,10 @@ pub struct Optimise {
     pub seed: Slot<u32>,
     /// How far inside its limits the design is kept.
     pub margin: Slot<Quantity>,
+    /// Against what of the scatter of making its limits are kept.
+    pub robust: Slot<&'static str>,
+    /// The part of the designs that keep each limit.
+    pub percentile: Slot<Quantity>,
 }
 
 /// What is made small or large.
@@ -44,6 +49,8 @@ pub struct Objective {
     pub window: Slot<Value>,
     /// A curve to come near to.
     pub target: Slot<Value>,
+    /// The same from a file.
+    pub target_file: Slot<DataFile>,
 }
 
 /// How far a number may change.
@@ -97,6 +104,22 @@ pub const DISTRIBUTIONS: &[Word] = &[
     Word { word: "triangular", doc: "from the ends to the middle" },
 ];
 
+/// What a design is kept against.
+pub const ROBUST: &[Word] = &[
+    Word { word: "no", doc: "the design as it is meant" },
+    Word { word: "percentile", doc: "each limit is kept by `percentile` of the designs made" },
+    Word { word: "worst_case", doc: "each limit is kept at the worst ends of all tolerances at once" },
+];
+
+/// What numbers are free for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A search: what is bound to a line stays on it.
+    Search,
+    /// The scatter of making, which keeps to nothing.
+    Scatter,
+}
+
 /// Most starts and most samples.
 const MOST_STARTS: f64 = 1e5;
 const MOST_SAMPLES: f64 = 1e8;
@@ -143,6 +166,17 @@ impl Describe for Optimise {
             &Param::new("margin", "How far inside its limits the design is kept, relative to each limit.").within(0.0, 0.5).default("0"),
             &mut self.margin,
         );
+        v.choice(
+            &Param::new("robust", "Keep every limit in spite of the scatter of making (`±` and `[tolerance]`).").default("no"),
+            ROBUST,
+            &mut self.robust,
+        );
+        v.quantity(
+            &Param::new("percentile", "With `robust = \"percentile\"`: the part of the designs made that keep each limit.")
+                .within(0.5, 0.999_999)
+                .default("95 %"),
+            &mut self.percentile,
+        );
     }
 }
 
@@ -152,6 +186,8 @@ impl Describe for Objective {
         v.text(&Param::new("maximise", "What is made large."), &mut self.maximise);
         v.deferred(&Param::new("window", "The stretch of the travel that counts, `[\"from\", \"to\"]`."), &mut self.window);
         v.deferred(&Param::new("target", "The curve to come near to, `[[\"2 mm\", \"5 N\"], …]`."), &mut self.target);
+        let doc = "The same from a CSV file: displacement and force, with units in the header, `travel / mm, force / N`.";
+        v.file(&Param::new("target_file", doc), &mut self.target_file);
     }
 }
 

@@ -7,6 +7,8 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics, SourceId, Span};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::data::DataFile;
+
 /// Deepest nesting accepted; real files need five.
 const DEEPEST: usize = 32;
 
@@ -32,6 +34,8 @@ pub enum Value {
     List(Vec<Item>),
     /// A table.
     Table(Table),
+    /// The path of a file, as the keys say that name one; it has been read.
+    File(DataFile),
     /// Something that has been reported already: a date, a number that is not finite. Whoever reads it says nothing more.
     Refused,
 }
@@ -40,7 +44,7 @@ impl Value {
     /// The kind of value, with its article, for messages.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Text(_) => "a text",
+            Self::Text(_) | Self::File(_) => "a text",
             Self::Number(_) => "a bare number",
             Self::Flag(_) => "true or false",
             Self::List(_) => "a list",
@@ -64,7 +68,7 @@ impl std::fmt::Display for Value {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let list = |items: Vec<String>| items.join(", ");
         match self {
-            Self::Text(text) => write!(f, "\"{text}\""),
+            Self::Text(text) | Self::File(DataFile { path: text, .. }) => write!(f, "\"{text}\""),
             Self::Number(number) => number.fmt(f),
             Self::Flag(flag) => flag.fmt(f),
             Self::List(items) => write!(f, "[{}]", list(items.iter().map(|i| i.value.to_string()).collect())),

@@ -7,6 +7,13 @@ fn length(text: &str) -> Quantity {
     Quantity::parse(text, Dimension::Length).unwrap()
 }
 
+/// Of a `±`.
+fn half_width(quantity: &Quantity) -> f64 {
+    let [lower, upper] = quantity.deviations_si().unwrap();
+    assert_eq!((-lower).to_bits(), upper.to_bits());
+    upper
+}
+
 #[test]
 fn every_dimension_has_a_row_and_its_example_reads() {
     for dimension in Dimension::all() {
@@ -58,19 +65,53 @@ fn torque_is_not_energy() {
 fn tolerances_in_every_spelling() {
     for text in ["0.85 mm ± 0.02 mm", "0.85 mm +/- 0.02 mm", "0.85 ± 0.02 mm", "0.85 mm ± 20 µm", "0.85mm±0.02mm", "0.85 mm ± 0.02"] {
         let q = length(text);
-        assert!((q.si - 0.85e-3).abs() < 1e-18 && (q.half_width_si().unwrap() - 2e-5).abs() < 1e-18, "{text}");
+        assert!((q.si - 0.85e-3).abs() < 1e-18 && (half_width(&q) - 2e-5).abs() < 1e-18, "{text}");
     }
-    assert!((length("2 mm ± 5 %").half_width_si().unwrap() - 1e-4).abs() < 1e-18);
+    assert!((half_width(&length("2 mm ± 5 %")) - 1e-4).abs() < 1e-18);
     let ratio = Quantity::parse("0.12 ± 0.03", Dimension::Ratio).unwrap();
-    assert!((ratio.half_width_si().unwrap() - 0.03).abs() < 1e-15);
-    assert_eq!(length("17.6 mm h7").tolerance, Some(Tolerance::Fit { letters: "h".to_owned(), grade: 7 }));
+    assert!((half_width(&ratio) - 0.03).abs() < 1e-15);
+    assert_eq!(length("17.6 mm h7").tolerance, Some(Tolerance::Fit(Fit::parse("h7").unwrap())));
     assert!(Quantity::parse("1 mm ± -2 mm", Dimension::Length).is_err());
     assert!(Quantity::parse("1 mm ± 2 N", Dimension::Length).is_err());
 }
 
 #[test]
+fn fits_are_read_with_their_diameter() {
+    let limits = |text: &str| length(text).deviations_si().unwrap().map(f64::to_bits);
+    let wanted = |lower: f64, upper: f64| [lower, upper].map(f64::to_bits);
+    assert_eq!(limits("17.6 mm h7"), wanted(-18e-6, 0.0));
+    assert_eq!(limits("1.76 cm  h7"), wanted(-18e-6, 0.0));
+    assert_eq!(limits("19.4 mm H7"), wanted(0.0, 21e-6));
+    // The upper end of a step belongs to it, to the last bit and in every unit.
+    assert_eq!(limits("18 mm h7"), wanted(-18e-6, 0.0));
+    assert_eq!(limits("0.018 m h7"), wanted(-18e-6, 0.0));
+    assert_eq!(limits("18.000001 mm h7"), wanted(-21e-6, 0.0));
+    let error = |text: &str| Quantity::parse(text, Dimension::Length).unwrap_err();
+    assert_eq!(error("17.6 mm q7"), QuantityError::Fit("q7".to_owned(), FitError::Letters));
+    assert_eq!(error("17.6 mm h19"), QuantityError::Fit("h19".to_owned(), FitError::Grade));
+    assert!(matches!(error("600 mm h7"), QuantityError::Fit(_, FitError::Diameter(..))));
+    assert!(matches!(error("-5 mm h7"), QuantityError::Fit(_, FitError::Diameter(..))));
+    // No other quantity has a fit, and a misspelt unit is no fit.
+    assert!(matches!(Quantity::parse("17.6 N h7", Dimension::Force), Err(QuantityError::Unit(_))));
+    assert!(matches!(error("17.6 mm mm2"), QuantityError::Fit(..)));
+    assert!(matches!(error("17.6 mm h7 x"), QuantityError::Unit(_)));
+}
+
+#[test]
+fn a_number_without_its_unit() {
+    let millimetre = Unit::parse("mm").unwrap();
+    let read = |text: &str| Quantity::parse_in(text, &millimetre).map(|q| q.si);
+    assert_eq!(read(" 1.25 "), Ok(1.25e-3));
+    assert_eq!(read("−2e-1"), Ok(-0.2e-3));
+    assert_eq!(read("1 mm"), Err(QuantityError::NotANumber));
+    assert_eq!(read(""), Err(QuantityError::NotANumber));
+    assert_eq!(read("1e400"), Err(QuantityError::NotFinite));
+    assert_eq!(read("1,5"), Err(QuantityError::DecimalComma("1.5".to_owned())));
+}
+
+#[test]
 fn what_is_typed_is_printed() {
-    for text in ["0.85 mm ± 0.02 mm", "34.497 mm", "3.4497 cm", "17.6 mm h7", "1.3 in"] {
+    for text in ["0.85 mm ± 0.02 mm", "34.497 mm", "3.4497 cm", "17.6 mm h7", "25 mm JS01", "1.3 in"] {
         assert_eq!(length(text).to_string(), text);
     }
     assert_eq!(Quantity::parse("2 GPa", Dimension::Stress).unwrap().to_string(), "2 GPa");

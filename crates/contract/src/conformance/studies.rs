@@ -11,7 +11,7 @@ use crate::edit::with_values;
 use crate::family::Mechanism;
 use crate::numbers::{Number, numbers_of};
 use crate::read;
-use crate::studies::Free;
+use crate::studies::{Free, Purpose};
 
 /// Change of a number, relative to itself: small enough that every design stays one.
 const CHANGE: f64 = 1e-3;
@@ -43,7 +43,7 @@ pub(super) fn suite<M: Mechanism>(example: &str) {
         panic!("what can vary alone cannot vary together: {:?}", messages(&said))
     };
     vary(evaluator.as_ref(), &paths);
-    match M::task(&spec, &design, &able, &mut said) {
+    match M::task(&spec, &design, &able, Purpose::Search, &mut said) {
         Some(task) => vary(task.evaluator.as_ref(), &paths),
         None => refused::<M>("there is no search", &said),
     }
@@ -84,6 +84,7 @@ fn vary(evaluator: &dyn Evaluator, paths: &BTreeSet<&str>) {
     assert!(full.values.iter().chain(&full.jacobian).all(|v| v.is_finite()), "a value is not finite");
     let bits = |evaluation: &Evaluation| evaluation.values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&plain), bits(&full), "values depend on whether derivatives are wanted");
+    some_rows(evaluator, &x, &full);
     let mut next = 0;
     for output in evaluator.outputs() {
         assert!(output.values.start == next && output.values.end >= next && !output.name.is_empty(), "{output:?}");
@@ -91,9 +92,24 @@ fn vary(evaluator: &dyn Evaluator, paths: &BTreeSet<&str>) {
     }
     assert_eq!(next, full.values.len(), "values that no output names");
     let mut measured = Vec::new();
-    evaluator.measure(&x, &full.values, &mut measured);
+    evaluator.measure(&x, &full.values, &mut measured, &mut evaluator.workspace());
     assert_eq!(measured.len(), evaluator.measures().len(), "a value per measure");
-    assert!(measured.iter().flatten().all(|v| v.is_finite()), "a measure is not finite: {measured:?}");
+    assert!(measured.iter().all(|v| v.is_finite() || v.is_nan()), "a measure is not finite: {measured:?}");
+}
+
+/// Derivatives of some values are those of all, and of the others nothing; whether the design was the last in the workspace or not.
+fn some_rows(evaluator: &dyn Evaluator, x: &[f64], full: &Evaluation) {
+    let rows: Vec<bool> = (0..full.values.len()).map(|i| i % 3 == 0).collect();
+    let mut workspace = evaluator.workspace();
+    for fresh in [true, false] {
+        let mut some = Evaluation { values: full.values.clone(), jacobian: Vec::new() };
+        assert!(evaluator.differentiate(x, &rows, &mut some, &mut workspace).is_ok(), "no derivatives, workspace fresh: {fresh}");
+        let chunks = some.jacobian.chunks_exact(x.len().max(1)).zip(full.jacobian.chunks_exact(x.len().max(1)));
+        for ((own, all), wanted) in chunks.zip(&rows) {
+            let same = own.iter().zip(all).all(|(a, b)| a.to_bits() == if *wanted { b.to_bits() } else { 0.0_f64.to_bits() });
+            assert!(same, "derivatives of some values differ from those of all, workspace fresh: {fresh}");
+        }
+    }
 }
 
 /// Every number can be written into the file, and is read from it.

@@ -3,6 +3,7 @@
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
 use super::{EditError, member, put};
+use crate::data::names_a_file;
 
 /// The text with settings `KEY=VALUE` of the command line written into it, so that it stands without them. A `variant` that says
 /// otherwise is changed as well.
@@ -36,19 +37,43 @@ fn set_everywhere(document: &mut DocumentMut, new: &New, variant: Option<&str>) 
     own.map_or(Ok(()), |own| set(own, &parts, new, false))
 }
 
-/// The text for another folder: a relative path in `extends` is led there through `way`, the path from the new folder to the old one.
+/// The text for another folder: relative paths in `extends` and of files of data, in variants too, are led there through `way`, the path
+/// from the new folder to the old one.
 ///
 /// # Errors
 /// [`EditError`] if the text is not TOML.
 pub fn with_base_from(text: &str, way: &str) -> Result<String, EditError> {
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| EditError::NotToml(e.message().to_owned()))?;
-    if let Some(base) = document.get_mut("extends").and_then(Item::as_value_mut)
-        && let Some(path) = base.as_str().filter(|path| !std::path::Path::new(path).is_absolute())
-    {
-        let led = Value::from(format!("{way}/{path}"));
-        put(base, led);
+    if let Some(base) = document.get_mut("extends").and_then(Item::as_value_mut) {
+        lead(base, way);
     }
+    lead_files(document.as_table_mut(), way);
     Ok(document.to_string())
+}
+
+fn lead(value: &mut Value, way: &str) {
+    if let Some(path) = value.as_str().filter(|path| !std::path::Path::new(path).is_absolute()) {
+        let led = Value::from(format!("{way}/{path}"));
+        put(value, led);
+    }
+}
+
+/// Leads the paths of all keys that name a file.
+fn lead_files(table: &mut dyn TableLike, way: &str) {
+    for (key, item) in table.iter_mut() {
+        match item {
+            Item::Value(value) if names_a_file(key.get()) => lead(value, way),
+            Item::ArrayOfTables(list) => list.iter_mut().for_each(|table| lead_files(table, way)),
+            Item::Value(Value::Array(list)) => {
+                list.iter_mut().filter_map(Value::as_inline_table_mut).for_each(|table| lead_files(table, way));
+            }
+            other => {
+                if let Some(inner) = other.as_table_like_mut() {
+                    lead_files(inner, way);
+                }
+            }
+        }
+    }
 }
 
 /// What is written: a value, and the list to write where the one that it stands in is not there yet.

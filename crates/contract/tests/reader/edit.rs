@@ -26,7 +26,7 @@ bend = [1.5, -0.25]  # rad
 [[design.beams]]
 name = "leaf"
 between = ["a", "b"]
-thickness = "1.2 mm h7"
+pin = "1.2 mm h7"
 
 [[load]]
 travel = "3 mm"
@@ -80,7 +80,7 @@ fn nothing_changes_where_nothing_is_changed() {
 #[test]
 fn comments_order_unit_and_tolerance_stay() {
     replaces(&[("design.thickness", 0.912_345_678e-3)], &[("0.8 mm ± 20 µm", "0.9123457 mm ± 0.02 mm")]);
-    replaces(&[("design.beams.leaf.thickness", 1.25e-3)], &[("1.2 mm h7", "1.25 mm h7")]);
+    replaces(&[("design.beams.leaf.pin", 1.25e-3)], &[("1.2 mm h7", "1.25 mm h7")]);
     replaces(&[("design.friction", 0.25)], &[("= 0.3", "= 0.25")]);
 }
 
@@ -134,7 +134,7 @@ fn what_stands_in_an_extended_file_is_written_into_this_one() {
             ("design.nodes.a.at.x", 2e-3),
             ("design.nodes.a.through.1.y", 2.5e-3),
             ("design.beams.stiff.bend.2", 0.75),
-            ("design.beams.leaf.thickness", 1.3e-3),
+            ("design.beams.leaf.pin", 1.3e-3),
             ("load.2.travel", 7e-3),
         ],
     );
@@ -153,8 +153,8 @@ fn a_member_that_the_list_of_this_file_lacks_is_added_by_its_name() {
 fn a_name_that_looks_like_a_place_is_a_name() {
     let base = TEXT.replace("\"leaf\"", "\"1\"");
     let over = "extends = \"base.toml\"\n[[design.beams]]\nname = \"stiff\"\nbend = [0.1, 0.2]\n";
-    edited(&[("a.toml", over), ("base.toml", &base)], None, &[("design.beams.1.thickness", 2e-3)]);
-    edited(&[("a.toml", &base)], None, &[("design.beams.1.thickness", 2e-3)]);
+    edited(&[("a.toml", over), ("base.toml", &base)], None, &[("design.beams.1.pin", 2e-3)]);
+    edited(&[("a.toml", &base)], None, &[("design.beams.1.pin", 2e-3)]);
 }
 
 #[test]

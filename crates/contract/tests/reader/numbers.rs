@@ -1,5 +1,6 @@
 //! Numbers by their paths.
 
+use forcewright_base::fits::Fit;
 use forcewright_base::units::{Dimension, Tolerance};
 use forcewright_contract::describe::Range;
 use forcewright_contract::numbers::{Number, Part};
@@ -21,7 +22,7 @@ b = { at = ["3 mm", "4 mm"], through = [["1 mm", "2 mm"], ["3 mm", "4 mm"]] }
 name = "leaf"
 between = ["a", "b"]
 bend = [1.5, -0.25]
-thickness = "1.2 mm h7"
+pin = "1.2 mm h7"
 [[load]]
 travel = "3 mm"
 [[load]]
@@ -55,7 +56,7 @@ fn every_number_has_its_path_and_its_value() {
         ("design.nodes.b.through.2.y", 4e-3, Part::OfPoints(1, 1)),
         ("design.beams.leaf.bend.1", 1.5, Part::Entry(0)),
         ("design.beams.leaf.bend.2", -0.25, Part::Entry(1)),
-        ("design.beams.leaf.thickness", 1.2e-3, Part::Whole),
+        ("design.beams.leaf.pin", 1.2e-3, Part::Whole),
         ("load.1.travel", 3e-3, Part::Whole),
         ("load.2.travel", 5e-3, Part::Whole),
     ];
@@ -81,7 +82,7 @@ fn a_number_knows_its_unit_its_range_its_place_and_its_tolerance() {
     assert_eq!(&TEXT[thickness.span.start..thickness.span.end], "\"0.8 mm ± 2 %\"");
     assert_eq!(find("design.nodes.a.at.y").unit.symbol(), "cm");
     assert_eq!(find("design.nodes.a.at.y").tolerance, None);
-    assert_eq!(find("design.beams.leaf.thickness").tolerance, Some(Tolerance::Fit { letters: "h".to_owned(), grade: 7 }));
+    assert_eq!(find("design.beams.leaf.pin").tolerance, Some(Tolerance::Fit(Fit::parse("h7").unwrap())));
 }
 
 #[test]

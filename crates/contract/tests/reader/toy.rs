@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use forcewright_base::diagnostics::{Diagnostics, Severity};
+use forcewright_base::diagnostics::{Diagnostics, Severity, Sources};
 use forcewright_base::units::{Dimension, Quantity};
+use forcewright_contract::data::DataFile;
 use forcewright_contract::describe::{Along, Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
 use forcewright_contract::numbers::{Number, numbers_of};
@@ -36,6 +37,7 @@ pub(crate) struct Design {
     force: Slot<Quantity>,
     copies: Slot<u32>,
     width: Slot<Along>,
+    pub(crate) measured_file: Slot<DataFile>,
     nodes: Vec<Member<Node>>,
     beams: Vec<Member<Beam>>,
 }
@@ -56,6 +58,7 @@ pub(crate) struct Beam {
     bend: Slot<Vec<f64>>,
     straight: Slot<bool>,
     thickness: Slot<Quantity>,
+    pin: Slot<Quantity>,
 }
 
 const SUPPORTS: &[Word] = &[Word { word: "clamped", doc: "held" }, Word { word: "pinned", doc: "turns" }];
@@ -83,6 +86,7 @@ impl Describe for Design {
         v.quantity(&Param::new("force", "A force.").of(Dimension::Force), &mut self.force);
         v.count(&Param::new("copies", "Copies.").within(1.0, 8.0), &mut self.copies);
         v.along(&length("width", "Width."), 3, &mut self.width);
+        v.file(&Param::new("measured_file", "What was measured."), &mut self.measured_file);
         v.members(&Param::new("nodes", "Nodes."), Form::Table, &mut self.nodes);
         v.members(&Param::new("beams", "Beams."), Form::List, &mut self.beams);
     }
@@ -109,6 +113,7 @@ impl Describe for Beam {
         v.numbers(&Param::new("bend", "Coefficients.").within(-50.0, 50.0), &mut self.bend);
         v.flag(&Param::new("straight", "Straight."), &mut self.straight);
         v.quantity(&Param::new("thickness", "Its own thickness.").of(Dimension::Length).above(0.0, 1.0), &mut self.thickness);
+        v.quantity(&Param::new("pin", "Diameter of its pin.").diameter().above(0.0, 1.0), &mut self.pin);
     }
 }
 
@@ -119,10 +124,10 @@ impl Files for Memory {
     fn read(&self, path: &Path) -> Result<String, FileError> {
         let name = path.to_string_lossy();
         match name.as_ref() {
-            "broken-utf8.toml" => Err(FileError::NotUtf8(7)),
-            "broken-large.toml" => Err(FileError::TooLarge(100_000_000)),
-            "broken-folder.toml" => Err(FileError::NotAFile),
-            "broken-rights.toml" => Err(FileError::Unreadable("permission denied".to_owned())),
+            "broken-utf8.toml" | "broken-utf8.csv" => Err(FileError::NotUtf8(7)),
+            "broken-large.toml" | "broken-large.csv" => Err(FileError::TooLarge(100_000_000)),
+            "broken-folder.toml" | "broken-folder.csv" => Err(FileError::NotAFile),
+            "broken-rights.toml" | "broken-rights.csv" => Err(FileError::Unreadable("permission denied".to_owned())),
             _ => self.0.get(name.as_ref()).cloned().ok_or(FileError::NotFound),
         }
     }
@@ -136,6 +141,8 @@ pub(crate) struct Reading {
     pub(crate) found: Vec<String>,
     /// Help of each.
     pub(crate) help: Vec<String>,
+    /// The texts that were read.
+    pub(crate) sources: Sources,
     /// Everything as a terminal shows it.
     pub(crate) shown: String,
 }
@@ -170,7 +177,7 @@ pub(crate) fn read_files(files: &[(&str, &str)], variant: Option<&str>, set: &[&
         None => Toy::default(),
     };
     let (found, help) = lines(&project);
-    Reading { toy, found, help, shown: project.diagnostics.render(&project.sources, false) }
+    Reading { toy, found, help, shown: project.diagnostics.render(&project.sources, false), sources: project.sources }
 }
 
 /// Only what is shown of it.

@@ -1,0 +1,189 @@
+//! Tables of measured data beside a project: which keys name them, and how their text is read.
+//!
+//! A table is a CSV file: lines that begin with `#` are comments, the first other line names the columns with their units, `travel / mm,
+//! force / N`, and numbers with a decimal point follow. Columns are separated by commas, or by semicolons where the header has one.
+
+use std::fmt;
+use std::sync::Arc;
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, SourceId, Span};
+use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit};
+
+use crate::project::FileError;
+
+/// Whether a key names a file: `file`, or a key that ends in `_file`. No other key does, so that files are found before anything is
+/// understood, and by who writes a project into another folder.
+pub fn names_a_file(key: &str) -> bool {
+    key == "file" || key.ends_with("_file")
+}
+
+/// A file that a key names.
+#[derive(Clone, Debug)]
+pub struct DataFile {
+    /// As typed.
+    pub path: String,
+    /// What stands in it.
+    pub content: Result<Content, FileError>,
+}
+
+/// The text of a file.
+#[derive(Clone, Debug)]
+pub struct Content {
+    /// Its number among the sources of the project.
+    pub source: SourceId,
+    /// The text, without a byte order mark.
+    pub text: Arc<str>,
+}
+
+impl fmt::Display for DataFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.path)
+    }
+}
+
+/// What a column must hold.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// What it is, for messages.
+    pub name: &'static str,
+    /// Its quantity.
+    pub dimension: Dimension,
+}
+
+/// A value of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// The value, SI.
+    pub si: f64,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Columns separated by `separator`, each without the blanks and the quotes around it.
+fn cells(line: &str, base: Span, separator: char) -> Vec<(Span, &str)> {
+    let mut at = base.start;
+    let parts = line.split(separator).map(|part| {
+        let start = at + (part.len() - part.trim_start().len());
+        at += part.len() + separator.len_utf8();
+        let text = part.trim();
+        let bare = text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).unwrap_or(text);
+        (Span { start, end: start + text.len(), ..base }, bare.trim())
+    });
+    parts.collect()
+}
+
+fn broken(span: Span, message: impl Into<String>, label: &str, help: impl Into<String>) -> Diagnostic {
+    Diagnostic::error("E0112", span, message).label(label).help(help)
+}
+
+/// Reads the columns that are wanted, in their order, and no others: a row per line, at most `most`. What is wrong is reported at its
+/// line and column; `None` after an error.
+pub fn rows<const N: usize>(file: &DataFile, columns: &[Column; N], most: usize, diagnostics: &mut Diagnostics) -> Option<Vec<[Cell; N]>> {
+    let content = file.content.as_ref().ok()?;
+    let whole = Span { source: content.source, ..Span::default() };
+    let mut at = 0;
+    let lines = content.text.split_inclusive('\n').map(|line| {
+        let start = at;
+        at += line.len();
+        let text = line.trim_end_matches(['\n', '\r']);
+        (Span { start, end: start + text.len(), ..whole }, text)
+    });
+    let mut lines = lines.filter(|(_, text)| !text.trim().is_empty() && !text.trim_start().starts_with('#'));
+    let Some((place, header)) = lines.next() else {
+        diagnostics.push(broken(whole, format!("`{file}` is empty"), "no header", format!("begin with {}", example(columns))));
+        return None;
+    };
+    let separator = if header.contains(';') { ';' } else { ',' };
+    let units = units((place, header), separator, columns, diagnostics)?;
+    let before = diagnostics.errors();
+    let mut found = Vec::new();
+    for (place, line) in lines {
+        if found.len() == most {
+            diagnostics.push(broken(place, format!("more than {most} rows"), "one too many", "leave out rows: every second, every tenth"));
+            return None;
+        }
+        let values = cells(line, place, separator);
+        if values.len() != N {
+            let message = format!("{} values, {N} are expected", values.len());
+            let help = format!("separate the columns by `{separator}`, as in the header, and write decimal points");
+            diagnostics.push(broken(place, message, "this row", help));
+            continue;
+        }
+        let mut row = [Cell { si: 0.0, span: place }; N];
+        for ((cell, unit), (span, text)) in row.iter_mut().zip(&units).zip(values) {
+            match Quantity::parse_in(text, unit) {
+                Ok(quantity) => *cell = Cell { si: quantity.si, span },
+                Err(error) => diagnostics.push(number_error(&error, text, span)),
+            }
+        }
+        found.push(row);
+    }
+    if found.is_empty() && diagnostics.errors() == before {
+        diagnostics.push(broken(place, format!("`{file}` has no rows"), "nothing below this header", "write numbers below it"));
+    }
+    (diagnostics.errors() == before).then_some(found)
+}
+
+/// A header with what is wanted.
+fn example<const N: usize>(columns: &[Column; N]) -> String {
+    let one = |c: &Column| {
+        let unit = c.dimension.example().split_once(' ').map_or("", |(_, unit)| unit);
+        if unit.is_empty() { c.name.to_owned() } else { format!("{} / {unit}", c.name) }
+    };
+    format!("a header `{}`", columns.iter().map(one).collect::<Vec<_>>().join(", "))
+}
+
+/// The units of the header.
+fn units<const N: usize>(
+    (place, header): (Span, &str),
+    separator: char,
+    columns: &[Column; N],
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<Unit>> {
+    let names = cells(header, place, separator);
+    let help = format!("write {}", example(columns));
+    if names.iter().any(|(_, name)| name.starts_with(|c: char| c.is_ascii_digit())) {
+        diagnostics.push(broken(place, "the header is missing", "numbers without names", help));
+        return None;
+    }
+    if names.len() != N {
+        let message = format!("the header names {} columns, {N} are expected", names.len());
+        diagnostics.push(broken(place, message, "this header", format!("{help}, columns separated by `,` or `;`")));
+        return None;
+    }
+    let mut units = Vec::with_capacity(N);
+    for ((span, name), column) in names.into_iter().zip(columns) {
+        let wanted = column.dimension;
+        let (code, message) = match name.split_once('/').map(|(_, unit)| Unit::parse(unit.trim())) {
+            None if wanted == Dimension::Ratio => {
+                units.push(Unit::si(wanted));
+                continue;
+            }
+            None => ("E0208", format!("the column of the {} has no unit", column.name)),
+            Some(Err(error)) => ("E0203", error.to_string()),
+            Some(Ok(unit)) if !unit.is(wanted) => {
+                let kind = unit.dimension().map_or_else(String::new, |d| format!(" the unit of {},", d.name()));
+                ("E0201", format!("`{unit}` is{kind} no unit of {}", wanted.name(), unit = unit.symbol()))
+            }
+            Some(Ok(unit)) => {
+                units.push(unit);
+                continue;
+            }
+        };
+        diagnostics.push(Diagnostic::error(code, span, message).label(format!("expected {}", wanted.name())).help(help.clone()));
+    }
+    (units.len() == N).then_some(units)
+}
+
+fn number_error(error: &QuantityError, text: &str, span: Span) -> Diagnostic {
+    let shown: String = text.chars().take(60).collect();
+    let (code, message, help) = match error {
+        QuantityError::DecimalComma(point) => ("E0202", "decimal comma in a number".to_owned(), format!("write {point}")),
+        QuantityError::NotFinite => {
+            ("E0205", format!("`{shown}` is not a finite number"), "leave the row out where nothing was measured".to_owned())
+        }
+        _ if text.is_empty() => ("E0202", "a value is missing".to_owned(), "leave the row out where nothing was measured".to_owned()),
+        _ => ("E0202", format!("`{shown}` is not a number"), "write a bare number: the unit stands in the header".to_owned()),
+    };
+    Diagnostic::error(code, span, message).label("this value").help(help)
+}
