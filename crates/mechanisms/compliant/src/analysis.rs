@@ -401,7 +401,7 @@ fn length_ratio(design: &Design) -> Option<f64> {
 }
 
 /// Volume of a beam, m³: the thickness is linear between places.
-fn volume_m3(beam: &forcewright_beam::Beam) -> f64 {
+pub(crate) fn volume_m3(beam: &forcewright_beam::Beam) -> f64 {
     if beam.profile.is_empty() {
         return beam.section.area_m2() * beam.shape.length_m();
     }
@@ -410,7 +410,7 @@ fn volume_m3(beam: &forcewright_beam::Beam) -> f64 {
 }
 
 /// Mass of all beams of the whole layout, kg, if every density is known.
-fn mass_kg(design: &Design) -> Option<f64> {
+pub(crate) fn mass_kg(design: &Design) -> Option<f64> {
     let beams = design.network.beams.iter().enumerate();
     let masses = beams.map(|(i, b)| Some(design.material_of(i)?.density_kg_per_m3? * volume_m3(b)));
     Some(design.copies() * masses.sum::<Option<f64>>()?)

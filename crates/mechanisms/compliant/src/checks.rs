@@ -439,6 +439,7 @@ impl Context<'_> {
                     basis: info.doc.to_owned(),
                     fix: self.limit_fix(info.name, broken),
                     missing: match info.name {
+                        "mass" => "the density of a material is not known; give `density` in its table".to_owned(),
                         _ if !self.behaviour.whole => self.unreached(),
                         LATERAL if value.is_none() && !broken && self.behaviour.sway.is_some() => {
                             "free to turn, the block is not held at all at some displacement; there is no largest value".to_owned()

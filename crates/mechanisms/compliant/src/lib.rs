@@ -26,7 +26,7 @@ mod sway;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress, Reproduction};
-use forcewright_contract::studies::{Free, Studies};
+use forcewright_contract::studies::{Free, Purpose, Studies};
 use forcewright_model::{Counter, Outcome, Status, StatusKind};
 
 use forcewright_study::evaluator::Evaluator;
@@ -99,8 +99,8 @@ impl Mechanism for Compliant {
         study::evaluator(spec, design, free, diagnostics)
     }
 
-    fn task(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task> {
-        study::task(spec, design, free, diagnostics)
+    fn task(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
+        study::task(spec, design, free, purpose, diagnostics)
     }
 
     fn explanations() -> &'static [Explanation] {

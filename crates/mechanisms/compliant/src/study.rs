@@ -2,13 +2,15 @@
 
 mod knobs;
 mod line;
+mod mass;
 mod scatter;
 mod search;
 mod task;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_beam::Drive;
-use forcewright_contract::studies::Free;
+use forcewright_contract::describe::Origin;
+use forcewright_contract::studies::{Free, Purpose};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
 
@@ -20,19 +22,24 @@ use scatter::Scatter;
 /// The design as studies that look at many see it.
 pub(crate) fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
     check_drive(spec, design, diagnostics)?;
-    let knobs = Knobs::new(spec, design, free, false, diagnostics)?;
+    let knobs = Knobs::new(spec, design, free, Purpose::Scatter, diagnostics)?;
     let place = spec.studies.tolerance.present.as_ref().map(|p| p.span).unwrap_or_default();
     say_what_is_left(&scatter::not_measured(design), "is not looked at by this study", place, diagnostics);
-    Some(Box::new(Scatter::new(design, knobs)))
+    Some(Box::new(Scatter::new(design, knobs, given(spec))))
+}
+
+/// The accuracy that the file asks for.
+fn given(spec: &Spec) -> Option<f64> {
+    spec.model.accuracy.as_ref().filter(|a| a.origin == Origin::File).map(|a| a.value.si)
 }
 
 /// The search that `[optimise]` asks for.
-pub(crate) fn task(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Task> {
+pub(crate) fn task(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
     check_drive(spec, design, diagnostics)?;
-    let knobs = Knobs::new(spec, design, free, true, diagnostics)?;
+    let knobs = Knobs::new(spec, design, free, purpose, diagnostics)?;
     let place = spec.studies.optimise.present.as_ref().map(|p| p.span).unwrap_or_default();
     say_what_is_left(&task::not_kept(design), "is not seen by the search; it is checked at the end", place, diagnostics);
-    task::task(design, knobs, &spec.studies.optimise.objective, diagnostics)
+    task::task(design, knobs, (&spec.studies.optimise.objective, given(spec)), diagnostics)
 }
 
 /// Studies look at forces over a prescribed displacement from rest.

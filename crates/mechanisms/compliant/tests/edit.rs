@@ -55,11 +55,8 @@ fn some(numbers: &[Number], seeded: &mut Seeded) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for (index, number) in numbers.iter().enumerate() {
         let si = number.si * (1.0 + 1e-2 * (seeded.next() - 0.5));
-        let half = match number.tolerance {
-            Some(forcewright_base::units::Tolerance::Symmetric(half)) => half,
-            _ => 0.0,
-        };
-        if seeded.next() < part && number.range.holds(si - half) && number.range.holds(si + half) && number.path.starts_with("design.") {
+        let [lower, upper] = number.tolerance.and_then(|t| t.deviations_si(si)).unwrap_or_default();
+        if seeded.next() < part && number.range.holds(si + lower) && number.range.holds(si + upper) && number.path.starts_with("design.") {
             all.push((index, si));
         }
     }

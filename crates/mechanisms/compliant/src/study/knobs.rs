@@ -4,7 +4,7 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::units::Quantity;
 use forcewright_beam::{Beam, Network, Parameter, Shape, Variant};
 use forcewright_contract::describe::Located;
-use forcewright_contract::studies::Free;
+use forcewright_contract::studies::{Free, Purpose};
 use forcewright_study::evaluator::Variable;
 
 use crate::design::Design;
@@ -51,8 +51,9 @@ pub(crate) struct Knobs {
 
 impl Knobs {
     /// Understands the numbers; what this family cannot change is reported. A node that stays on a line has one number for both
-    /// coordinates if `on_lines` is set: a search keeps to it, the scatter of making does not.
-    pub(crate) fn new(spec: &Spec, design: &Design, free: &[Free], on_lines: bool, diagnostics: &mut Diagnostics) -> Option<Self> {
+    /// coordinates in a search.
+    pub(crate) fn new(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Self> {
+        let on_lines = purpose == Purpose::Search;
         let (mut knobs, mut variables) = (Vec::new(), Vec::new());
         let before = diagnostics.errors();
         let all = free;
@@ -174,7 +175,7 @@ impl Knobs {
     }
 
     /// Adds the derivatives of minus half the thickness of a beam at a place.
-    pub(crate) fn add_half_thickness(&self, beam: usize, own: &Beam, u: f64, row: &mut [f64]) {
+    pub(super) fn add_half_thickness(&self, beam: usize, own: &Beam, u: f64, row: &mut [f64]) {
         for (knob, out) in self.each.iter().zip(row) {
             *out -= match knob {
                 Knob::Thickness(beams) if beams.contains(&beam) => 0.5,

@@ -36,6 +36,11 @@ impl Line {
         Self(places)
     }
 
+    /// The point at a place, m.
+    pub(super) fn at(&self, u: f64) -> [f64; 2] {
+        self.local(u).at
+    }
+
     fn cells(&self) -> usize {
         self.0.len() - 1
     }
@@ -53,6 +58,26 @@ impl Line {
         };
         let [x, y] = [cubic(0), cubic(1)];
         Local { at: [x[0], y[0]], by: [x[1], y[1]], bend: [x[2], y[2]] }
+    }
+
+    /// Squared distance of the line from a point, m², and where it is least within a range.
+    fn nearest_to(&self, point: [f64; 2], [low, high]: [f64; 2]) -> (f64, f64) {
+        let place = |i: usize| (i as f64 / self.cells() as f64).clamp(low, high);
+        let square = |u: f64| {
+            let apart = minus(self.at(u), point);
+            dot(apart, apart)
+        };
+        let best = (0..=self.cells()).reduce(|b, i| if square(place(i)) < square(place(b)) { i } else { b }).unwrap_or(0);
+        let (mut u, most) = (place(best), 1.0 / self.cells() as f64);
+        let nearby = [(u - most).max(low), (u + most).min(high)];
+        for _ in 0..STEPS {
+            let here = self.local(u);
+            let apart = minus(here.at, point);
+            let (slope, bend) = (dot(apart, here.by), dot(here.by, here.by) + dot(apart, here.bend));
+            let step = if bend > 0.0 { -slope / bend } else { -slope.signum() * most };
+            u = (u + step.clamp(-most, most)).clamp(nearby[0], nearby[1]);
+        }
+        (square(u), u)
     }
 
     /// The place between two others at which the distance to a wall across an axis is least; `sign` is that of what is inside, `half_m`
@@ -86,10 +111,35 @@ pub(super) fn apart(network: &Network, [a, b]: [usize; 2]) -> [[f64; 2]; 2] {
     [part(a, b), part(b, a)]
 }
 
-/// Where two beams are nearest, as parts of their lengths within two ranges: of the polygons through the places first, then by Newton's
-/// method on half the squared distance. Where the axes cross, nothing is nearer.
-pub(super) fn closest(lines: [&Line; 2], [range_u, range_v]: [[f64; 2]; 2]) -> (f64, f64) {
-    let (mut u, mut v) = of_polygons(lines, [range_u, range_v]);
+/// Two places on two beams, as parts of their lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Nearest {
+    pub(super) at: [f64; 2],
+    /// Whether the axes cross: then the places are an end and what is next to it on the other beam.
+    pub(super) crossed: bool,
+}
+
+/// Where two beams are nearest within two ranges. Where their axes cross, the end that would have to be drawn the shortest way to the
+/// other beam until they do not.
+pub(super) fn closest(lines: [&Line; 2], ranges: [[f64; 2]; 2]) -> Nearest {
+    let (distance, u, v) = of_polygons(lines, ranges);
+    let (u, v) = settled(lines, (u, v), ranges);
+    // Axes that cross where their polygons do not are nearer than any thickness.
+    if distance > 0.0 {
+        return Nearest { at: [u, v], crossed: false };
+    }
+    let ends = [0, 1].into_iter().flat_map(|which| ranges[which].map(|end| (which, end)));
+    // An end that is kept apart only from a joint on is not one that can be drawn through the other beam.
+    let drawn = ends.filter(|(_, end)| matches!(*end, 0.0 | 1.0)).map(|(which, end)| {
+        let (square, there) = lines[1 - which].nearest_to(lines[which].at(end), ranges[1 - which]);
+        (square, if which == 0 { [end, there] } else { [there, end] })
+    });
+    let shortest = drawn.reduce(|best, next| if next.0 < best.0 { next } else { best });
+    Nearest { at: shortest.map_or([u, v], |(_, at)| at), crossed: true }
+}
+
+/// Goes to the nearest places by Newton's method on half the squared distance.
+fn settled(lines: [&Line; 2], (mut u, mut v): (f64, f64), [range_u, range_v]: [[f64; 2]; 2]) -> (f64, f64) {
     for _ in 0..STEPS {
         let (p, q) = (lines[0].local(u), lines[1].local(v));
         let apart = minus(q.at, p.at);
@@ -114,8 +164,8 @@ pub(super) fn closest(lines: [&Line; 2], [range_u, range_v]: [[f64; 2]; 2]) -> (
     (u, v)
 }
 
-/// The same of the polygons through the places.
-fn of_polygons([one, other]: [&Line; 2], ranges: [[f64; 2]; 2]) -> (f64, f64) {
+/// Squared distance of the polygons through the places, and where it is least; 0 where they cross.
+fn of_polygons([one, other]: [&Line; 2], ranges: [[f64; 2]; 2]) -> (f64, f64, f64) {
     let cells = |line: &Line, [low, high]: [f64; 2]| {
         let count = line.cells() as f64;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places from 0 to 1 times a small count")]
@@ -137,7 +187,7 @@ fn of_polygons([one, other]: [&Line; 2], ranges: [[f64; 2]; 2]) -> (f64, f64) {
             }
         }
     }
-    (best.1, best.2)
+    best
 }
 
 /// Squared distance of two segments, and the parts of them at which it is least: at an end of one of them, unless they cross.
@@ -202,17 +252,28 @@ mod tests {
     fn two_circles_are_nearest_on_the_line_of_their_centres() {
         // The second is mirrored: its line runs over the left half.
         let mirrored = Line::new(quarter(-3.0).0.iter().map(|[at, by]| [[-at[0], at[1]], [-by[0], by[1]]]).collect());
-        let (u, v) = closest([&quarter(0.0), &mirrored], [[0.0, 1.0]; 2]);
-        assert!((u - 1.0).abs() < 1e-6 && (v - 1.0).abs() < 1e-6, "{u} {v}");
-        let (u, v) = closest([&quarter(0.0), &mirrored], [[0.0, 0.75]; 2]);
-        assert!((u - 0.75).abs() < 1e-6 && (v - 0.75).abs() < 1e-6, "{u} {v}");
+        for (ranges, place) in [([[0.0, 1.0]; 2], 1.0), ([[0.0, 0.75]; 2], 0.75)] {
+            let Nearest { at: [u, v], crossed } = closest([&quarter(0.0), &mirrored], ranges);
+            assert!((u - place).abs() < 1e-6 && (v - place).abs() < 1e-6 && !crossed, "{u} {v}");
+        }
+    }
+
+    /// A straight line between two points.
+    fn straight(from: [f64; 2], to: [f64; 2]) -> Line {
+        let by = minus(to, from);
+        Line::new((0..=16).map(|i| [[0, 1].map(|a| from[a] + by[a] * f64::from(i) / 16.0), by]).collect())
     }
 
     #[test]
-    fn lines_that_cross_meet() {
-        // Centres one radius apart, the second line mirrored: they cross half way between.
-        let mirrored = Line::new(quarter(-1.0).0.iter().map(|[at, by]| [[-at[0], at[1]], [-by[0], by[1]]]).collect());
-        let (u, v) = closest([&quarter(0.0), &mirrored], [[0.0, 1.0]; 2]);
-        assert!((u - 1.0 / 3.0).abs() < 1e-5 && (v - 1.0 / 3.0).abs() < 1e-5, "{u} {v}");
+    fn lines_that_cross_are_undone_at_the_end_that_is_nearest_to_the_other() {
+        let (across, along) = (straight([0.0, -1.0], [0.0, 3.0]), straight([-2.0, 0.0], [5.0, 0.0]));
+        let Nearest { at: [u, v], crossed } = closest([&across, &along], [[0.0, 1.0]; 2]);
+        assert!(crossed && u == 0.0 && (v - 2.0 / 7.0).abs() < 1e-6, "{u} {v}");
+        // Where the near end belongs to a joint of both, the other line's.
+        let Nearest { at: [u, v], crossed } = closest([&across, &along], [[0.125, 1.0], [0.0, 1.0]]);
+        assert!(crossed && v == 0.0 && (u - 0.25).abs() < 1e-6, "{u} {v}");
+        // The same whichever comes first.
+        let Nearest { at, crossed } = closest([&along, &across], [[0.0, 1.0], [0.125, 1.0]]);
+        assert!(crossed && at.map(f64::to_bits) == [v, u].map(f64::to_bits), "{at:?}");
     }
 }

@@ -7,12 +7,12 @@ use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Outp
 use super::knobs::{Knob, Knobs};
 use crate::analysis::{PAPER_BAND, RANGE_FRACTION};
 use crate::design::{Design, Requirements};
-use crate::force_curve::ForceCurve;
+use crate::force_curve::{ForceCurve, Interval};
 use crate::metrics::METRICS;
 
 /// Displacements at which a curve is computed, rest included: between them it is a cubic.
 const STATIONS: usize = 41;
-/// Error of a curve allowed where the design asks for less, relative to the largest force: below the scatter of any process.
+/// Error of a curve where the file does not say, relative to the largest force: below the scatter of any process.
 const ACCURACY: f64 = 1e-5;
 /// The same where many designs are solved side by side: the finest with which that is possible.
 const TOGETHER: f64 = 3e-5;
@@ -51,6 +51,7 @@ pub(crate) struct Scatter {
 }
 
 struct Room {
+    curve: ForceCurve,
     solver: CurveSolver,
     batch: Option<BatchSolver>,
     network: Network,
@@ -58,18 +59,21 @@ struct Room {
 }
 
 impl Scatter {
-    pub(crate) fn new(design: &Design, knobs: Knobs) -> Self {
+    /// `accuracy` is what the file asks of `model.accuracy`: it then holds for every design, coarser or finer than this study would
+    /// choose. The default of a single design is not meant for many.
+    pub(crate) fn new(design: &Design, knobs: Knobs, accuracy: Option<f64>) -> Self {
         let last = STATIONS - 1;
         let output =
             |name: &str, unit, index: usize| Output { name: name.to_owned(), unit, values: index * STATIONS..(index + 1) * STATIONS };
         let settings = design.settings();
-        let coarser = Settings { accuracy: settings.accuracy.max(TOGETHER), ..settings };
+        let to = |usual: f64| Settings { accuracy: accuracy.unwrap_or(usual), ..settings };
         // A variant of a network has its thickness along beams, and beams that do not span their nodes by bends, from the template.
+        let possible = to(TOGETHER).accuracy >= TOGETHER;
         let uniform = !knobs.each.iter().any(|knob| matches!(knob, Knob::ThicknessAt { .. }));
         Self {
-            together: (uniform && spanned(&design.network)).then_some(coarser),
+            together: (possible && uniform && spanned(&design.network)).then_some(to(TOGETHER)),
             base: design.network.clone(),
-            settings: Settings { accuracy: settings.accuracy.max(ACCURACY), ..settings },
+            settings: to(ACCURACY),
             stations_m: (0..STATIONS).map(|i| design.load_end * i as f64 / last as f64).collect(),
             copies: design.copies(),
             requirements: design.requirements.clone(),
@@ -92,19 +96,22 @@ impl Scatter {
         Ok(())
     }
 
-    /// The metrics of [`MEASURED`] but the stress.
-    fn of_curve(&self, curve: &ForceCurve) -> [Option<f64>; MEASURED.len() - 1] {
+    /// Deviation and usable travel, and the metrics of [`MEASURED`] but the stress.
+    fn of_curve(&self, curve: &ForceCurve) -> [Option<f64>; MEASURED.len() + 1] {
         let (end, travel) = (curve.end(), curve.end() - curve.start());
         let force = self.requirements.as_ref().and_then(|r| r.force);
+        let travel_m = self.requirements.as_ref().and_then(|r| r.travel_m);
+        let window = force.zip(travel_m).and_then(|((_, nominal), travel)| curve.best_window(travel, nominal));
         let flat = curve.longest_flat(force.map_or(PAPER_BAND, |(band, _)| band));
-        let turns = curve.turns();
-        let max = turns.iter().find(|t| t.is_max);
-        let min = max.and_then(|max| turns.iter().find(|t| !t.is_max && t.at > max.at));
-        let within = force.and_then(|(band, nominal)| {
-            let nominal = nominal?;
-            Some(curve.longest_within(nominal * (1.0 - band), nominal * (1.0 + band)).map_or(0.0, |i| i.length() / travel))
-        });
+        let length = |i: Option<Interval>| i.map_or(0.0, |i| i.length());
+        let within = force.and_then(|(band, nominal)| Some((band, nominal?)));
+        let within = within.map(|(band, level)| length(curve.longest_within(level * (1.0 - band), level * (1.0 + band))));
+        let max = curve.turning().find(|t| t.is_max);
+        let min = max.and_then(|max| curve.turning().find(|t| !t.is_max && t.at > max.at));
         [
+            window.map(|(_, deviation)| deviation),
+            // Without a level of its own, the longest interval of the band is the flat one.
+            force.map(|_| within.unwrap_or(length(flat))),
             Some(curve.force(end)),
             curve.range_start(RANGE_FRACTION).map(|c| (end - c) / travel),
             flat.map(|i| i.length() / travel),
@@ -112,7 +119,7 @@ impl Scatter {
                 let (hi, lo) = curve.extent(i);
                 f64::midpoint(hi, lo)
             }),
-            within,
+            within.map(|length| length / travel),
             max.map(|turn| curve.force(turn.at)),
             min.map(|turn| curve.force(turn.at)),
             Some(curve.slope(0.0)),
@@ -219,7 +226,13 @@ impl Evaluator for Scatter {
 
     fn workspace(&self) -> Workspace {
         let batch = self.together.as_ref().map(|_| BatchSolver::new());
-        Workspace::new(Room { solver: CurveSolver::new(), batch, network: self.base.clone(), out: Evaluation::default() })
+        Workspace::new(Room {
+            curve: ForceCurve::default(),
+            solver: CurveSolver::new(),
+            batch,
+            network: self.base.clone(),
+            out: Evaluation::default(),
+        })
     }
 
     fn evaluate(&self, x: &[f64], derivatives: bool, out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure> {
@@ -235,24 +248,16 @@ impl Evaluator for Scatter {
         Ok(())
     }
 
-    fn measure(&self, _: &[f64], values: &[f64], out: &mut Vec<Option<f64>>) {
+    fn measure(&self, _: &[f64], values: &[f64], out: &mut Vec<f64>, workspace: &mut Workspace) {
         out.clear();
-        let [force, stiffness, stress] = [0, 1, 2].map(|i| values[i * STATIONS..(i + 1) * STATIONS].to_vec());
-        let stress_pa = stress.iter().fold(0.0, |m: f64, s| m.max(*s));
-        let curve = ForceCurve::new(self.stations_m.clone(), force, stiffness);
-        let band = self.requirements.as_ref().and_then(|r| r.force);
-        let travel_m = self.requirements.as_ref().and_then(|r| r.travel_m);
-        let window = band.zip(travel_m).and_then(|((_, nominal), travel)| curve.best_window(travel, nominal));
-        out.push(window.map(|(_, deviation)| deviation));
-        out.push(band.map(|(band, nominal)| {
-            let usable = match nominal {
-                Some(level) => curve.longest_within(level * (1.0 - band), level * (1.0 + band)),
-                None => curve.longest_flat(band),
-            };
-            usable.map_or(0.0, |i| i.length())
-        }));
-        out.extend(self.of_curve(&curve));
-        out.push(Some(stress_pa));
+        let [force_n, stiffness_n_per_m, stress_pa] = [0, 1, 2].map(|i| values.get(i * STATIONS..(i + 1) * STATIONS).unwrap_or_default());
+        let Some(Room { curve, .. }) = workspace.get::<Room>().filter(|_| values.len() == 3 * STATIONS) else {
+            out.resize(self.measures.len(), f64::NAN);
+            return;
+        };
+        curve.set(&self.stations_m, force_n, stiffness_n_per_m);
+        out.extend(self.of_curve(curve).map(|measure| measure.unwrap_or(f64::NAN)));
+        out.push(stress_pa.iter().fold(0.0, |m: f64, s| m.max(*s)));
     }
 
     fn evaluate_all(&self, designs: &[f64], workspace: &mut Workspace, sink: &mut dyn FnMut(usize, Result<&Evaluation, &Failure>)) {

@@ -1,8 +1,9 @@
 //! From `[optimise]` and the requirements to a search: its goal, its bands, its limits.
 
-use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::text::closest;
-use forcewright_base::units::Dimension;
+use forcewright_base::units::{Dimension, format_si};
+use forcewright_contract::data::{Cell, Column, DataFile, rows};
 use forcewright_contract::describe::{Located, Section};
 use forcewright_contract::read::deferred_quantities;
 use forcewright_contract::studies::Objective;
@@ -11,8 +12,9 @@ use forcewright_study::evaluator::Variable;
 use forcewright_study::task::{Band, Goal, Limit, Step, Task};
 
 use super::knobs::Knobs;
+use super::mass;
 use super::search::{Block, Edge, Search};
-use crate::analysis::PAPER_BAND;
+use crate::analysis::{PAPER_BAND, mass_kg};
 use crate::design::{Design, Requirements};
 use crate::metrics::METRICS;
 
@@ -25,7 +27,8 @@ const OBJECTIVES: &[(&str, &str)] = &[
     ("force_ratio", "F(a)/F(b) − 1 with `window = [\"b\", \"a\"]`: eq. (1) of Lan, Wang & Chen 2010"),
     ("stress_max", "largest stress over the travel"),
     ("safety_factor", "yield stress over the largest stress"),
-    ("force_target", "sum of squared differences to the curve in `target`"),
+    ("force_target", "sum of squared differences to the curve in `target` or `target_file`"),
+    ("mass", "mass of the beams, whole layout"),
 ];
 
 /// Where a window that may move begins at first, as part of the travel.
@@ -41,11 +44,16 @@ struct Posed {
     before: Option<(Goal, Vec<Band>)>,
 }
 
-/// Builds the task; what is wrong with the objective is reported.
-pub(crate) fn task(design: &Design, knobs: Knobs, objective: &Section<Objective>, diagnostics: &mut Diagnostics) -> Option<Task> {
+/// Builds the task; what is wrong with the objective is reported. `given` is the accuracy that the file asks for.
+pub(crate) fn task(
+    design: &Design,
+    knobs: Knobs,
+    (objective, given): (&Section<Objective>, Option<f64>),
+    diagnostics: &mut Diagnostics,
+) -> Option<Task> {
     let (name, large) = named(objective, diagnostics)?;
     let wanted = Wanted::new(design, name, objective, diagnostics)?;
-    let search = Search::new(design, knobs, wanted.variables.clone(), wanted.window, wanted.blocks.clone());
+    let search = Search::new(design, knobs, given, &wanted);
     let limits = limits(design, &search, &wanted);
     let posed = wanted.pose(design, &search, large);
     let own = search.knobs.variables.len()..search.knobs.variables.len() + wanted.variables.len();
@@ -90,7 +98,7 @@ fn named<'a>(objective: &'a Section<Objective>, diagnostics: &mut Diagnostics) -
         return None;
     };
     let sense = match name {
-        "force_deviation" | "force_ratio" | "force_target" | "stress_max" => Some(false),
+        "force_deviation" | "force_ratio" | "force_target" | "stress_max" | "mass" => Some(false),
         "flat_ratio" | "band_ratio" | "safety_factor" => Some(true),
         _ => None,
     };
@@ -107,11 +115,12 @@ fn named<'a>(objective: &'a Section<Objective>, diagnostics: &mut Diagnostics) -
 }
 
 /// What the evaluator must compute for an objective and the requirements.
-struct Wanted {
+pub(super) struct Wanted {
     name: &'static str,
-    variables: Vec<Variable>,
-    window: Option<[Edge; 2]>,
-    blocks: Vec<Block>,
+    /// Beside the numbers of the design.
+    pub(super) variables: Vec<Variable>,
+    pub(super) window: Option<[Edge; 2]>,
+    pub(super) blocks: Vec<Block>,
     target_n: Vec<f64>,
 }
 
@@ -125,7 +134,16 @@ impl Wanted {
         };
         match (name, typed) {
             ("force_deviation", Some([start, end])) => wanted.window = Some([Edge::Fixed(start), Edge::Fixed(end)]),
-            ("force_ratio", Some([b, a])) => wanted.blocks.push(Block::ForceRatio([a, b])),
+            ("force_ratio", Some([b, a])) if b > 0.0 => wanted.blocks.push(Block::ForceRatio([a, b])),
+            ("force_ratio", Some(_)) => {
+                let span = objective.window.as_ref().map(|w| w.span).unwrap_or_default();
+                diagnostics.push(
+                    Diagnostic::error("E0204", span, "there is no force at rest to compare with")
+                        .label("begins at zero")
+                        .help("begin later: `window = [\"4 mm\", \"8.8 mm\"]`"),
+                );
+                return None;
+            }
             ("force_ratio", None) => {
                 let place = objective.present.as_ref().map(|p| p.span).unwrap_or_default();
                 diagnostics.push(
@@ -169,6 +187,13 @@ impl Wanted {
         if limit(requirements, "length_ratio_max").is_some() {
             wanted.blocks.push(Block::LengthRatio);
         }
+        let densities = mass::densities(design);
+        if name == "mass" && densities.is_none() {
+            no_density(design, objective, diagnostics);
+            return None;
+        }
+        let weighed = name == "mass" || limit(requirements, "mass").is_some();
+        wanted.blocks.extend(densities.filter(|_| weighed).map(Block::Mass));
         if limit(requirements, "clearance_min").is_some() {
             let beams = design.network.beams.len();
             wanted.blocks.push(Block::Clearance((0..beams).flat_map(|a| (a + 1..beams).map(move |b| [a, b])).collect()));
@@ -188,39 +213,44 @@ impl Wanted {
 
     fn target(&mut self, objective: &Section<Objective>, design: &Design, diagnostics: &mut Diagnostics) -> Option<()> {
         let place = objective.present.as_ref().map(|p| p.span).unwrap_or_default();
-        let how = "give `target = [[\"2 mm\", \"5 N\"], [\"4 mm\", \"7 N\"]]`";
-        let Some(Located { value: Value::List(pairs), span, .. }) = &objective.target else {
-            diagnostics.push(Diagnostic::error("E0302", place, "`force_target` needs a curve").help(how));
-            return None;
-        };
-        let mut curve = Vec::new();
-        for Item { value, span } in pairs {
-            let one = |item: &Item, dimension| {
-                Some(*deferred_quantities(&Located::new(item.value.clone(), item.span), dimension, diagnostics)?.first()?)
-            };
-            let mut one = one;
-            let pair = match value {
-                Value::List(two) if two.len() == 2 => one(&two[0], Dimension::Length).zip(one(&two[1], Dimension::Force)),
-                _ => None,
-            };
-            match pair {
-                Some((at, force)) if at > 0.0 && at <= design.load_end => curve.push((at, force)),
-                _ => {
-                    diagnostics.push(
-                        Diagnostic::error("E0204", *span, "a point of the curve is a displacement within the travel and a force")
-                            .label("this point")
-                            .help(how),
-                    );
-                    return None;
-                }
+        let curve = match (&objective.target, &objective.target_file) {
+            (Some(typed), None) => typed_curve(typed, diagnostics)?,
+            (None, Some(file)) => measured_curve(&file.value, diagnostics)?,
+            (Some(_), Some(file)) => {
+                let message = "`target` and `target_file` exclude each other";
+                diagnostics.push(Diagnostic::error("E0305", file.span, message).label("the second of two").help("keep one"));
+                return None;
             }
+            (None, None) => {
+                let help = format!("{HOW}, or `target_file = \"wanted.csv\"`");
+                diagnostics.push(Diagnostic::error("E0302", place, "`force_target` needs a curve").help(help));
+                return None;
+            }
+        };
+        let mut last = f64::NEG_INFINITY;
+        for [at, _] in &curve {
+            let why = match at.si {
+                m if m < 0.0 || m > design.load_end => "a point of the curve lies outside of the travel",
+                m if m <= last => "the displacements of the curve do not ascend",
+                _ => "",
+            };
+            if !why.is_empty() {
+                let travel = format_si(design.load_end, &design.units.displacement, 6);
+                let help = format!("displacements go from 0 to the travel of the load, {travel}, and each is above the one before");
+                diagnostics.push(Diagnostic::error("E0204", at.span, why).label("this displacement").help(help));
+                return None;
+            }
+            last = at.si;
         }
-        if curve.is_empty() {
-            diagnostics.push(Diagnostic::error("E0302", *span, "the curve is empty").help(how));
+        // At rest there is no force, whatever the design.
+        let loaded: Vec<[Cell; 2]> = curve.iter().copied().filter(|[at, _]| at.si > 0.0).collect();
+        if loaded.is_empty() {
+            let rest = curve.first().map_or(place, |[at, _]| at.span);
+            diagnostics.push(Diagnostic::error("E0204", rest, "the curve has no point under load").label("at rest").help(HOW));
             return None;
         }
-        self.blocks.push(Block::Forces(curve.iter().map(|c| c.0).collect()));
-        self.target_n = curve.iter().map(|c| c.1).collect();
+        self.blocks.push(Block::Forces(loaded.iter().map(|[at, _]| at.si).collect()));
+        self.target_n = loaded.iter().map(|[_, force]| force.si).collect();
         Some(())
     }
 
@@ -262,6 +292,11 @@ impl Wanted {
                 let at = search.values(&Block::Forces(vec![design.load_end])).start;
                 plain(Goal::Values(vec![(at, if large { -1.0 } else { 1.0 })]))
             }
+            "mass" => {
+                let at = self.blocks.iter().find(|b| matches!(b, Block::Mass(_))).map_or(0, |b| search.values(b).start);
+                // As a part of the first mass, so that a milligram is not taken for nothing.
+                plain(Goal::Values(vec![(at, 1.0 / mass_kg(design).unwrap_or(1.0))]))
+            }
             // The largest stress is small where the safety factor is large.
             _ => {
                 let scale = design.common_allowable_pa().or(design.yield_pa(0)).unwrap_or(1e6);
@@ -271,6 +306,58 @@ impl Wanted {
     }
 }
 
+/// Says which material lacks its density.
+fn no_density(design: &Design, objective: &Section<Objective>, diagnostics: &mut Diagnostics) {
+    let span = objective.minimise.as_ref().map(|m| m.span).unwrap_or_default();
+    let table = design.materials.iter().find(|m| m.density_kg_per_m3.is_none()).map_or_else(String::new, |m| match &m.name {
+        Some(name) => format!("material.{name}"),
+        None => "material".to_owned(),
+    });
+    diagnostics.push(
+        Diagnostic::error("E0302", span, format!("`mass` needs a density, which `[{table}]` does not give"))
+            .label("this objective")
+            .help(format!("give `density = \"1410 kg/m^3\"` in `[{table}]`, or `use` an entry of the catalogue that has one")),
+    );
+}
+
+/// How a curve is written.
+const HOW: &str = "give `target = [[\"2 mm\", \"5 N\"], [\"4 mm\", \"7 N\"]]`";
+/// Most points of a curve: each is a state to be computed.
+const MOST_POINTS: usize = 500;
+
+fn no_curve<T>(span: Span, message: &str, diagnostics: &mut Diagnostics) -> Option<T> {
+    diagnostics.push(Diagnostic::error("E0204", span, message).label("this curve").help(HOW));
+    None
+}
+
+/// The curve of `target`: displacements and forces.
+fn typed_curve(target: &Located<Value>, diagnostics: &mut Diagnostics) -> Option<Vec<[Cell; 2]>> {
+    let points = match &target.value {
+        Value::List(points) if (1..=MOST_POINTS).contains(&points.len()) => points,
+        _ => return no_curve(target.span, &format!("a curve is a list of 1 to {MOST_POINTS} points"), diagnostics),
+    };
+    let point = |Item { value, span }: &Item| match value {
+        Value::List(two) if two.len() == 2 => {
+            Some([typed_value(&two[0], Dimension::Length, diagnostics)?, typed_value(&two[1], Dimension::Force, diagnostics)?])
+        }
+        _ => no_curve(*span, "a point of the curve is a displacement and a force", diagnostics),
+    };
+    points.iter().map(point).collect()
+}
+
+fn typed_value(item: &Item, dimension: Dimension, diagnostics: &mut Diagnostics) -> Option<Cell> {
+    match deferred_quantities(&Located::new(item.value.clone(), item.span), dimension, diagnostics)?[..] {
+        [si] => Some(Cell { si, span: item.span }),
+        _ => no_curve(item.span, "a point of the curve is a displacement and a force", diagnostics),
+    }
+}
+
+/// The curve of `target_file`.
+fn measured_curve(file: &DataFile, diagnostics: &mut Diagnostics) -> Option<Vec<[Cell; 2]>> {
+    let travel = Column { name: "travel", dimension: Dimension::Length };
+    rows(file, &[travel, Column { name: "force", dimension: Dimension::Force }], MOST_POINTS, diagnostics)
+}
+
 /// A limit on a metric: least and largest value.
 fn limit(requirements: Option<&Requirements>, name: &str) -> Option<(Option<f64>, Option<f64>)> {
     let limits = &requirements?.limits;
@@ -278,7 +365,7 @@ fn limit(requirements: Option<&Requirements>, name: &str) -> Option<(Option<f64>
 }
 
 /// Metrics on which a search keeps limits.
-const KEPT: [&str; 9] = [
+const KEPT: [&str; 10] = [
     "force_at_end",
     "flat_force",
     "flat_ratio",
@@ -288,12 +375,16 @@ const KEPT: [&str; 9] = [
     "clearance_min",
     "envelope_margin",
     "stiffness_min",
+    "mass",
 ];
 
 /// Requirements that a search does not see: they are checked at its end.
 pub(crate) fn not_kept(design: &Design) -> Vec<&'static str> {
     let limits = design.requirements.iter().flat_map(|r| &r.limits);
-    limits.filter_map(|(index, ..)| METRICS.get(*index).map(|m| m.name)).filter(|name| !KEPT.contains(name)).collect()
+    limits
+        .filter_map(|(index, ..)| METRICS.get(*index).map(|m| m.name))
+        .filter(|name| !KEPT.contains(name) || (*name == "mass" && mass_kg(design).is_none()))
+        .collect()
 }
 
 /// Two displacements of a window.
@@ -313,14 +404,18 @@ fn window(slot: &Located<Value>, design: &Design, diagnostics: &mut Diagnostics)
 
 /// Requirements as limits on the evaluator's values.
 fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
-    let Some(requirements) = &design.requirements else { return Vec::new() };
     let free = (f64::NEG_INFINITY, f64::INFINITY);
     let mut all = Vec::new();
     let mut add = |name: &str, key: &str, block: &Block, (lower, upper): (f64, f64), scale: f64, unit| {
         let values = search.values(block);
         if !values.is_empty() && (lower > f64::NEG_INFINITY || upper < f64::INFINITY) {
-            all.push(Limit { name: name.to_owned(), key: key.to_owned(), values, lower, upper, scale, unit });
+            all.push(Limit { name: name.to_owned(), key: key.to_owned(), checks: serves(name), values, lower, upper, scale, unit });
         }
+    };
+    let least_window_m = LEAST_WINDOW * design.load_end;
+    let Some(requirements) = &design.requirements else {
+        add("travel", "requirements.travel", &Block::WindowLength, (least_window_m, free.1), design.load_end, "m");
+        return all;
     };
     let of = |name: &str| limit(Some(requirements), name).unwrap_or((None, None));
     let (size_m, stiffness) = (size_m(design), rigidity(design));
@@ -348,6 +443,9 @@ fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
         (min.unwrap_or(free.0), max.unwrap_or(free.1))
     };
     add("beam length", "requirements.limits.length_ratio_max", &Block::LengthRatio, bounds("length_ratio_max"), 1.0, "1");
+    if let (Some(first_kg), Some(block)) = (mass_kg(design), wanted.blocks.iter().find(|b| matches!(b, Block::Mass(_)))) {
+        add("mass", "requirements.limits.mass", block, bounds("mass"), first_kg, "kg");
+    }
     let force_n = stiffness * design.load_end;
     add(
         "force at the end",
@@ -360,9 +458,25 @@ fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
     add("force", "requirements.limits.flat_force", &Block::Window, bounds("flat_force"), force_n, "N");
     let travel_m = requirements.travel_m.filter(|_| requirements.force.is_some()).unwrap_or(0.0);
     let flat_m = of("flat_ratio").0.unwrap_or(0.0) * design.load_end;
-    let shortest_m = travel_m.max(flat_m).max(LEAST_WINDOW * design.load_end);
+    let shortest_m = travel_m.max(flat_m).max(least_window_m);
     add("travel", "requirements.travel", &Block::WindowLength, (shortest_m, free.1), design.load_end, "m");
     all
+}
+
+/// Names of the checks that a limit serves.
+fn serves(limit: &str) -> Vec<&'static str> {
+    match limit {
+        "stress" => vec!["stress", "stress_max", "safety_factor"],
+        "stiffness" => vec!["stiffness", "stiffness_min", "stiffness_max"],
+        "envelope" => vec!["envelope", "envelope_margin"],
+        "clearance" => vec!["clearance_min"],
+        "beam length" => vec!["length_ratio_max"],
+        "mass" => vec!["mass"],
+        "force at the end" => vec!["force_at_end"],
+        "force" => vec!["flat_force"],
+        "travel" => vec!["travel", "flat_ratio"],
+        _ => Vec::new(),
+    }
 }
 
 /// Size of the drawn network, m.
