@@ -89,7 +89,13 @@ const OPTIMISE_HELP: &str = "\
 The section [optimise] of the file says what is made small or large and which numbers may change; requirements are kept. The first search
 starts from the design of the file, further ones are spread over the ranges. The same seed gives the same result.
 
-Writes FILE-optimised.toml (comments kept), report.html and result.json. Ctrl-C ends the search and keeps the best design so far.
+Writes FILE-optimised.toml (comments kept), report.html and result.json.
+
+--front KEY=SPEC searches once for each value of a key, such as requirements.stress.safety_factor=1..2:5 (a range with its count) or =1,1.5,2
+(a list), each point from the designs of the others too. Writes FILE-front-01.toml, …, front.csv, report.html and result.json; exit code 0
+if every point meets all requirements, 1 if one does not.
+
+Ctrl-C ends the search and keeps the best design so far.
 
 Exit codes: 0 the new design meets all requirements, 1 it does not (it is written all the same), 2 error in the file or the call, 3 no design could be computed, 4 input/output, 130 interrupted, best kept.";
 
@@ -107,6 +113,7 @@ fn optimise() -> Command {
                 .value_parser(clap::value_parser!(std::path::PathBuf))
                 .help("Write the new project file, report.html and result.json into this folder"),
         )
+        .arg(number("front", "The best goal over values of a key: a Pareto front").value_name("KEY=SPEC"))
         .arg(number("starts", "Searches, instead of `starts` of the file").value_parser(clap::value_parser!(u32).range(1..=100_000)))
         .arg(number("seed", "Seed of the starts after the first, instead of `seed` of the file").value_parser(clap::value_parser!(u32)))
         .arg(json());

@@ -54,7 +54,6 @@ fn what_cannot_be_studied_is_refused_with_its_code() {
     let depth = "parameters = { \"design.depth\" = { half_width = \"0.1 mm\" } }";
     let cases = [
         ("E0319", plain.clone()),
-        ("E0320", EXAMPLE.replace("\"10 mm\"", "\"10 mm h7\"")),
         ("E0321", with("parameters = { \"design.depth\" = {} }")),
         ("E0321", with("parameters = { \"design.depth\" = { half_width = \"-1 mm\" } }")),
         ("E0201", with("parameters = { \"design.depth\" = { half_width = \"1 N\" } }")),

@@ -25,6 +25,7 @@ pub const EXAMPLES: &[Example] = examples![
     "compliant/lan-thin",
     "compliant/lan-sub-cfm",
     "compliant/optimise-lan-box",
+    "compliant/optimise-lan-equal-forces",
     "compliant/tolerance-lan-thin",
 ];
 

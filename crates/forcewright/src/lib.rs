@@ -15,6 +15,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod front;
 pub mod gallery;
 mod load;
 mod optimise;
@@ -30,8 +31,9 @@ pub use forcewright_report as report;
 pub use forcewright_study as study;
 
 pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
+pub use front::{Front, FrontPoint, FrontProgress, FrontTask, Origin};
 pub use load::{Loaded, Refused};
-pub use optimise::{Optimised, Wording};
+pub use optimise::{Optimised, Robust, Robustness, Wording};
 pub use tolerance::{NoTolerance, ToleranceChoices, Toleranced};
 
 use forcewright_base::diagnostics::Explanation;

@@ -40,6 +40,17 @@ impl Refused {
         self.diagnostics.render(&self.sources, colour)
     }
 
+    /// With the last settings, so many, shown as values of another option than `--set`.
+    pub(crate) fn typed_as(mut self, option: &str, settings: usize) -> Self {
+        let first = self.sources.iter().count().saturating_sub(settings);
+        let mut sources = Sources::default();
+        for (at, source) in self.sources.iter().enumerate() {
+            sources.add(if at < first { source.name.as_str() } else { option }, source.text.as_ref());
+        }
+        self.sources = sources;
+        self
+    }
+
     /// How many errors there are.
     pub fn errors(&self) -> usize {
         self.diagnostics.in_file_order().iter().filter(|d| d.severity == Severity::Error).count()

@@ -1,11 +1,14 @@
 //! From `[optimise]` to a better project file.
 
-mod document;
+pub(crate) mod document;
 mod pages;
+mod robust;
 mod wording;
 
+pub use robust::{Robust, Robustness};
 pub use wording::Wording;
 
+use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,20 +16,36 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::units::Unit;
 use forcewright_contract::edit::{self, EditError};
 use forcewright_contract::project::{Choices, FileError, Files};
+use forcewright_contract::studies::Purpose;
 use forcewright_model::{CheckState, Report};
 use forcewright_study::evaluator::Variable;
-use forcewright_study::optimise::{Progress, Run, Search, Settings, again, search};
-use forcewright_study::task::Task;
+use forcewright_study::optimise::{Progress, Reserve, Run, Search, Settings, again, search};
+use forcewright_study::task::{Limit, Task};
 
 use crate::{Loaded, Refused};
 
 /// Rounds in which limits are tightened where the full analysis finds them missed by what the search does not see.
-const ROUNDS: usize = 6;
-/// The margin of the first of them, and how it grows.
-const FIRST_MARGIN: f64 = 1e-4;
-const MARGIN_GROWTH: f64 = 4.0;
+const ROUNDS: usize = 8;
+/// By how much, relative to what was missed.
+const TIGHTER: f64 = 1.25;
+/// The least by which a limit moves, relative to its scale, and a band, relative to its level: beyond what a search leaves open.
+const LEAST_MOVE: f64 = 3e-6;
+/// A requirement missed by more than this part of itself is not the doing of its own limit but of a band that was left between stations.
+const BEYOND: f64 = 0.01;
+/// A goal that is worse than the search says by more than this part of it.
+const FALLEN: f64 = 0.005;
+/// By how much such a band is narrowed.
+const NARROWER: f64 = 1e-4;
+/// What a search that begins from a limit missed leaves open.
+const CLOSELY_KEPT: f64 = 1e-6;
 /// A violation that a margin can mend.
 const NEARLY_KEPT: f64 = 1e-4;
+
+/// Basins whose best is analysed in full, until one meets all requirements.
+const MOST_BASINS: usize = 8;
+/// Times that the scatter is looked at, and the change of what it takes, relative to the most, below which limits are at rest.
+const MOST_LOOKS: usize = 8;
+const AT_REST: f64 = 0.02;
 
 /// What an optimisation found.
 pub struct Optimised {
@@ -44,10 +63,13 @@ pub struct Optimised {
     pub best: Option<Run>,
     /// The goal at the start, as [`Run::goal`].
     pub goal_before: Option<f64>,
-    /// The margin of the best run, relative to each limit.
-    pub margin: f64,
-    /// The margin that the project file asks for.
-    pub margin_asked: f64,
+    /// How far inside its limits the best run was kept.
+    pub reserve: Reserve,
+    /// The limits that were moved further inwards than asked, because the full analysis found them missed: each with the largest move, SI,
+    /// and its unit.
+    pub tightened: Vec<(String, f64, &'static str)>,
+    /// What the scatter of making does, if limits are kept against it.
+    pub robustness: Option<Robustness>,
     /// The project file with the numbers of the best run and the settings of the command line, comments kept.
     pub text: Option<String>,
     /// The design of the file.
@@ -58,11 +80,24 @@ pub struct Optimised {
     pub diagnostics: Diagnostics,
 }
 
+/// Where a search starts.
+#[derive(Default)]
+pub(crate) struct Beginnings {
+    /// Starts from the design and spread over the ranges; without it those of the file.
+    pub(crate) starts: Option<u32>,
+    /// Their seed; without it that of the file.
+    pub(crate) seed: Option<u32>,
+    /// Starts after those, as [`Settings::more_starts`].
+    pub(crate) more: Vec<Vec<f64>>,
+    /// Whether they are judged as they are, without a step.
+    pub(crate) as_they_are: bool,
+}
+
 /// The project's files with another text in one place.
-struct Changed<'a> {
-    files: &'a dyn Files,
-    path: &'a Path,
-    text: &'a str,
+pub(crate) struct Changed<'a> {
+    pub(crate) files: &'a dyn Files,
+    pub(crate) path: &'a Path,
+    pub(crate) text: &'a str,
 }
 
 impl Files for Changed<'_> {
@@ -71,20 +106,73 @@ impl Files for Changed<'_> {
     }
 }
 
+/// Moves the limits that the full analysis found missed inwards, by a little more than that.
+fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate) {
+    let count = task.evaluator.outputs().iter().map(|o| o.values.end).max().unwrap_or(0);
+    reserve.limits.resize(count, 0.0);
+    reserve.bands.resize(count, 0.0);
+    // A flat range at the edge of its band all along falls apart where the band is exceeded by next to nothing.
+    let mut narrower = if found.fell() { NARROWER } else { 0.0_f64 };
+    for check in found.report.outcome.checks.iter().filter(|c| c.required && c.state == CheckState::Missed) {
+        let by = check.value.zip(check.limit).map_or(0.0, |(value, limit)| (value - limit).abs());
+        // A check may be of another quantity than its limit, as a safety factor: of itself both miss as much.
+        let relative = check.limit.filter(|limit| limit.abs() > 0.0).map(|limit| by / limit.abs());
+        let size = |limit: &Limit| [limit.lower, limit.upper].into_iter().filter(|b| b.is_finite()).fold(0.0_f64, |m, b| m.max(b.abs()));
+        let missed = |limit: &Limit| relative.map_or(by, |part| part * size(limit));
+        let own: Vec<&Limit> = task.limits.iter().filter(|limit| limit.checks.contains(&check.name.as_str())).collect();
+        for limit in own.iter().filter(|limit| missed(limit) <= BEYOND * limit.scale) {
+            reserve.limits[limit.values.clone()].iter_mut().for_each(|r| *r += TIGHTER * missed(limit) + LEAST_MOVE * limit.scale);
+        }
+        // The band's own check says by how much it is too wide; a stroke far too short, that it is.
+        if check.name == "force" && by <= BEYOND {
+            narrower = narrower.max(TIGHTER * by + LEAST_MOVE);
+        } else if check.name == "force" || own.iter().any(|limit| missed(limit) > BEYOND * limit.scale) {
+            narrower = narrower.max(NARROWER);
+        }
+    }
+    reserve.bands.iter_mut().for_each(|r| *r += narrower);
+}
+
 /// A design found, as a file and analysed.
+#[derive(Clone)]
 struct Candidate {
     run: Run,
-    margin: f64,
+    reserve: Reserve,
     text: String,
     report: Report,
+    /// The goal by the full analysis where that knows it, else by the search. Smaller is better.
+    goal: f64,
 }
 
 impl Candidate {
-    /// The largest relative distance by which a requirement is missed; infinite where one could not be assessed.
-    fn shortfall(&self) -> f64 {
-        let missed = self.report.outcome.checks.iter().filter(|c| c.required && c.state != CheckState::Met);
-        missed.map(|c| c.margin.filter(|_| c.state == CheckState::Missed).map_or(f64::INFINITY, |m| -m)).fold(0.0, f64::max)
+    fn new(run: Run, reserve: &Reserve, (text, report): (String, Report), wording: &Wording) -> Self {
+        let goal = report.outcome.metric(&wording.objective).and_then(|m| wording.goal(m.value)).unwrap_or(run.goal);
+        Self { run, reserve: reserve.clone(), text, report, goal }
     }
+
+    fn met(&self) -> bool {
+        self.report.outcome.requirements_met()
+    }
+
+    /// Whether the full analysis finds the goal much worse than the search.
+    fn fell(&self) -> bool {
+        self.goal > self.run.goal + FALLEN * self.run.goal.abs()
+    }
+
+    /// Less missed, and of those that miss nothing the better goal.
+    fn beats(&self, other: &Self) -> bool {
+        match (self.met(), other.met()) {
+            (true, true) => self.goal < other.goal,
+            (false, false) => shortfall(&self.report) < shortfall(&other.report),
+            (met, _) => met,
+        }
+    }
+}
+
+/// The largest relative distance by which a requirement is missed; infinite where one could not be assessed.
+pub(crate) fn shortfall(report: &Report) -> f64 {
+    let missed = report.outcome.checks.iter().filter(|c| c.required && c.state != CheckState::Met);
+    missed.map(|c| c.margin.filter(|_| c.state == CheckState::Missed).map_or(f64::INFINITY, |m| -m)).fold(0.0, f64::max)
 }
 
 impl Loaded {
@@ -104,7 +192,7 @@ impl Loaded {
             return Err(Refused { diagnostics, sources: self.project.sources.clone(), file_missing: false });
         }
         let free = section.free(self.understood.numbers(), &mut diagnostics);
-        let task = if diagnostics.has_errors() { None } else { self.understood.task(&free, &mut diagnostics) };
+        let task = if diagnostics.has_errors() { None } else { self.understood.task(&free, Purpose::Search, &mut diagnostics) };
         match task.filter(|_| !diagnostics.has_errors()) {
             Some(task) => Ok((task, diagnostics)),
             None => Err(Refused { diagnostics, sources: self.project.sources.clone(), file_missing: false }),
@@ -158,14 +246,34 @@ impl Loaded {
         (starts, seed): (Option<u32>, Option<u32>),
         watch: &(dyn Fn(&Progress) -> bool + Sync),
     ) -> Result<Optimised, Refused> {
+        self.optimise_from(files, target, Beginnings { starts, seed, ..Beginnings::default() }, watch)
+    }
+
+    /// The same from starts that are known otherwise.
+    pub(crate) fn optimise_from(
+        &self,
+        files: &dyn Files,
+        target: &Path,
+        from: Beginnings,
+        watch: &(dyn Fn(&Progress) -> bool + Sync),
+    ) -> Result<Optimised, Refused> {
         let (task, diagnostics) = self.task()?;
         let section = &self.understood.studies().optimise;
-        let settings = Settings {
-            starts: starts.unwrap_or(self.starts()) as usize,
-            seed: u64::from(seed.unwrap_or(section.seed.as_ref().map_or(1, |s| s.value))),
-            margin: section.margin.as_ref().map_or(0.0, |m| m.value.si),
+        let mut settings = Settings {
+            starts: from.starts.unwrap_or(self.starts()) as usize,
+            more_starts: from.more,
+            seed: u64::from(from.seed.unwrap_or(section.seed.as_ref().map_or(1, |s| s.value))),
+            reserve: Reserve { margin: section.margin.as_ref().map_or(0.0, |m| m.value.si), ..Reserve::default() },
             ..Settings::default()
         };
+        if from.as_they_are {
+            settings.nlp.iteration_limit = 0;
+        }
+        let robust = Robust::asked(section);
+        if robust.is_some() {
+            // Whether anything scatters is found out before the work, not after.
+            self.scattering()?;
+        }
         let variables = task.evaluator.variables().to_vec();
         let nominal: Vec<f64> = variables.iter().map(|v| v.nominal).collect();
         // What cannot be written is refused before the work, not after.
@@ -179,13 +287,28 @@ impl Loaded {
             on
         };
         let mut found = search(&task, &settings, &go_on);
-        let best = found.best.map(|i| found.runs[i].clone()).filter(|run| !run.goal.is_nan());
-        let kept = match best {
-            Some(run) => Some(self.kept((files, target), (&task, &settings), run, &go_on, &stopped)?),
-            None => None,
-        };
+        // The best of each basin, the best first; where no run keeps all limits, the one that misses least.
+        let mut order: Vec<usize> = found.basins.iter().map(|b| b.best).collect();
+        order.truncate(MOST_BASINS);
+        order.extend(found.best.filter(|best| !order.contains(best)));
+        let mut kept: Option<Candidate> = None;
+        for run in order.into_iter().map(|i| &found.runs[i]).filter(|run| !run.goal.is_nan()) {
+            // One that meets all is beaten by none whose search promised less.
+            if kept.as_ref().is_some_and(|k| k.met() && k.goal <= run.goal) || kept.is_some() && stopped.load(Ordering::Relaxed) {
+                break;
+            }
+            let next = self.kept((files, target), (&task, &settings), run.clone(), &go_on, &stopped)?;
+            if kept.as_ref().is_none_or(|k| next.beats(k)) {
+                kept = Some(next);
+            }
+        }
+        let mut robustness = None;
+        if let Some((found, robust)) = kept.take_if(|_| robust.is_some()).zip(robust) {
+            let (found, looked) = self.hardened((files, target), (&task, &settings), (found, robust), &go_on, &stopped)?;
+            (kept, robustness) = (Some(found), Some(looked));
+        }
         found.interrupted |= stopped.into_inner();
-        let margin = kept.as_ref().map_or(settings.margin, |k| k.margin);
+        let reserve = kept.as_ref().map_or(settings.reserve, |k| k.reserve.clone());
         let (best, text, after) = kept.map_or((None, None, None), |k| (Some(k.run), Some(k.text), Some(k.report)));
         Ok(Optimised {
             title: task.title.clone(),
@@ -195,8 +318,9 @@ impl Loaded {
             variables,
             search: found,
             best,
-            margin,
-            margin_asked: settings.margin,
+            tightened: if robustness.is_some() { Vec::new() } else { tightened(&task, &reserve) },
+            reserve,
+            robustness,
             text,
             before,
             after,
@@ -214,34 +338,68 @@ impl Loaded {
         go_on: &(dyn Fn(&Progress) -> bool + Sync),
         stopped: &AtomicBool,
     ) -> Result<Candidate, Refused> {
-        let candidate = |run: Run, margin| {
+        let candidate = |run: Run, reserve: &Reserve| {
             let (text, report) = self.with_design(files, target, &task.evaluator.numbers(&run.x))?;
-            Ok(Candidate { run, margin, text, report })
+            Ok(Candidate::new(run, reserve, (text, report), &self.wording(task, None)))
         };
-        let mut best = candidate(run, settings.margin)?;
         let mut settings = settings.clone();
-        let mut from = best.run.clone();
+        settings.nlp.feasibility = settings.nlp.feasibility.min(CLOSELY_KEPT);
+        let mut last = candidate(run, &settings.reserve)?;
+        let mut best = last.clone();
         for _ in 1..ROUNDS {
-            if best.report.outcome.requirements_met() || stopped.load(Ordering::Relaxed) || !from.feasible(NEARLY_KEPT) {
+            let done = best.met() && !best.fell();
+            if done || stopped.load(Ordering::Relaxed) || !last.run.feasible(NEARLY_KEPT) {
                 break;
             }
-            settings.margin = if settings.margin > 0.0 { settings.margin * MARGIN_GROWTH } else { FIRST_MARGIN };
-            let mut next = again(task, &settings, &from, go_on);
+            tighten(&mut settings.reserve, task, &last);
+            let mut next = again(task, &settings, &last.run, go_on);
             if next.goal.is_nan() {
                 break;
             }
-            next.history.splice(0..0, from.history);
-            from = next;
-            let next = candidate(from.clone(), settings.margin)?;
-            if next.shortfall() < best.shortfall() {
-                best = next;
+            next.history.splice(0..0, last.run.history);
+            last = candidate(next, &settings.reserve)?;
+            if last.beats(&best) {
+                best = last.clone();
             }
         }
         Ok(best)
     }
 
+    /// The best run searched on from, with its limits moved inwards by what the scatter around each next design takes, until they rest.
+    fn hardened(
+        &self,
+        (files, target): (&dyn Files, &Path),
+        (task, settings): (&Task, &Settings),
+        (mut found, robust): (Candidate, Robust),
+        go_on: &(dyn Fn(&Progress) -> bool + Sync),
+        stopped: &AtomicBool,
+    ) -> Result<(Candidate, Robustness), Refused> {
+        let asked = found.reserve.clone();
+        let choices = Choices { variant: self.project.choices.variant.clone(), set: Vec::new() };
+        let project = |text: &str| Self::from_file(&Changed { files, path: target, text }, target, &choices);
+        let (mut rounds, mut settled) = (0, false);
+        while rounds < MOST_LOOKS && !settled && !stopped.load(Ordering::Relaxed) {
+            rounds += 1;
+            let Some(reserve) = project(&found.text)?.reserve(task, &found.run, robust, &asked)? else { break };
+            settled = reserve.rests(&found.reserve, task, AT_REST);
+            if settled {
+                break;
+            }
+            let mut next = again(task, &Settings { reserve: reserve.clone(), ..settings.clone() }, &found.run, go_on);
+            if next.goal.is_nan() {
+                break;
+            }
+            next.history.splice(0..0, found.run.history);
+            let written = self.with_design(files, target, &task.evaluator.numbers(&next.x))?;
+            found = Candidate::new(next, &reserve, written, &self.wording(task, None));
+        }
+        let yields = if stopped.load(Ordering::Relaxed) { [None, None] } else { [self.drawn(), project(&found.text)?.drawn()] };
+        let scattering = self.scattering()?.free.len();
+        Ok((found, Robustness { against: robust, scattering, rounds, settled, yields }))
+    }
+
     /// The project file's name, as given.
-    fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         self.project.sources.iter().next().map_or_else(String::new, |s| s.name.clone())
     }
 
@@ -281,6 +439,14 @@ impl Loaded {
             None => Ok(text),
         }
     }
+}
+
+/// The limits that were moved inwards, each with the largest move, SI, and its unit.
+fn tightened(task: &Task, reserve: &Reserve) -> Vec<(String, f64, &'static str)> {
+    let largest = |values: &[f64], range: Range<usize>| values.get(range).map_or(0.0, |own| own.iter().copied().fold(0.0, f64::max));
+    let limits = task.limits.iter().map(|l| (l.name.clone(), largest(&reserve.limits, l.values.clone()), l.unit));
+    let band = ("band".to_owned(), largest(&reserve.bands, 0..reserve.bands.len()), "1");
+    limits.chain([band]).filter(|(_, by, _)| *by > 0.0).collect()
 }
 
 /// The way from the folder of one file to that of another, with forward slashes; `None` if it is the same folder.

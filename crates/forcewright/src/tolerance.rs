@@ -1,6 +1,6 @@
 //! From `±` and `[tolerance]` to the yield of a design.
 
-mod document;
+pub(crate) mod document;
 mod page;
 mod picture;
 

@@ -11,7 +11,7 @@ fn search(settings: &[&str]) -> Optimised {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/compliant/optimise-lan-box.toml");
     let choices = Choices { variant: None, set: settings.iter().map(|s| (*s).to_owned()).collect() };
     let loaded = Loaded::from_file(&DiskFiles, &path, &choices).map_err(|e| e.render(false)).expect("the example is understood");
-    loaded.optimise(&DiskFiles, &path, (Some(1), None), &|_| true).map_err(|e| e.render(false)).expect("the search can be posed")
+    loaded.optimise(&DiskFiles, &path, (None, None), &|_| true).map_err(|e| e.render(false)).expect("the search can be posed")
 }
 
 /// What the full analysis says of the result.

@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod explain;
+pub(crate) mod front;
 pub(crate) mod materials;
 pub(crate) mod merge;
 pub(crate) mod new;

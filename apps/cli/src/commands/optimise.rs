@@ -13,7 +13,7 @@ use forcewright::base::units::format_number;
 use forcewright::model::{StudyColumn, StudyTable};
 use forcewright::report::{html, json};
 use forcewright::study::optimise::Progress;
-use forcewright::{DiskFiles, Loaded, Optimised, Wording};
+use forcewright::{DiskFiles, FrontProgress, Loaded, Optimised, Wording};
 use indicatif::ProgressBar;
 
 use super::{choices, refuse, solve};
@@ -27,6 +27,9 @@ const IN_A_FILE: Duration = Duration::from_secs(5);
 const KEPT: f64 = 1e-4;
 
 pub(crate) fn run(matches: &ArgMatches) -> u8 {
+    if let Some(front) = matches.get_one::<String>("front") {
+        return super::front::run(matches, front);
+    }
     let (Some(file), Some(folder)) = (matches.get_one::<PathBuf>("file"), matches.get_one::<PathBuf>("out")) else { return exit::USAGE };
     let as_json = matches.get_flag("json");
     let stop = interrupt::flag();
@@ -97,8 +100,11 @@ fn new_name(file: &Path) -> String {
 }
 
 /// The commands that make this result again, and that look at it.
-fn repeat_command(matches: &ArgMatches, file: &Path, folder: &Path) -> String {
+pub(super) fn repeat_command(matches: &ArgMatches, file: &Path, folder: &Path) -> String {
     let mut command = solve::repeat_command("optimise", file, Some(folder), &choices(matches));
+    if let Some(front) = matches.get_one::<String>("front") {
+        let _ = write!(command, " --front {}", solve::quote(front));
+    }
     for option in ["starts", "seed"] {
         if let Some(value) = matches.get_one::<u32>(option) {
             let _ = write!(command, " --{option} {value}");
@@ -119,7 +125,7 @@ fn summary(found: &Optimised) -> String {
     out
 }
 
-fn text_table(table: &StudyTable) -> String {
+pub(super) fn text_table(table: &StudyTable) -> String {
     let (mut heads, mut align) = (Vec::new(), Vec::new());
     for column in &table.columns {
         let (StudyColumn::Text(title) | StudyColumn::Number(title) | StudyColumn::Code(title)) = column;
@@ -131,9 +137,9 @@ fn text_table(table: &StudyTable) -> String {
 }
 
 /// Tells where the search stands, and stops it.
-struct Watch<'a> {
+pub(super) struct Watch<'a> {
     stop: &'a AtomicBool,
-    starts: u32,
+    starts: usize,
     steps: usize,
     wording: Wording,
     terminal: bool,
@@ -145,24 +151,43 @@ struct State {
     bar: Option<ProgressBar>,
     /// Goal and violation of the best design of a last step.
     best: Option<[f64; 2]>,
+    /// Point and pass of a front that they are of.
+    of: (usize, usize),
 }
 
 impl<'a> Watch<'a> {
-    fn new(stop: &'a AtomicBool, starts: u32, steps: usize, wording: Wording) -> Self {
-        let state = State { told: Instant::now(), bar: None, best: None };
-        Self { stop, starts, steps, wording, terminal: stderr().is_terminal(), state: Mutex::new(state) }
+    pub(super) fn new(stop: &'a AtomicBool, starts: u32, steps: usize, wording: Wording) -> Self {
+        let state = State { told: Instant::now(), bar: None, best: None, of: (0, 0) };
+        Self { stop, starts: starts as usize, steps, wording, terminal: stderr().is_terminal(), state: Mutex::new(state) }
     }
 
     /// Sees an iteration; whether to go on.
     fn see(&self, progress: &Progress) -> bool {
+        self.see_search(progress, (0, 0), self.starts, &|line| line)
+    }
+
+    /// Sees an iteration of a point of a front, which has these values; whether to go on.
+    pub(super) fn see_point(&self, progress: &FrontProgress, values: &[String]) -> bool {
+        let again = if progress.pass == 0 { "" } else { ", again" };
+        let named = |line: String| {
+            let value = values.get(progress.point).map_or("", String::as_str);
+            visible(&format!("point {} of {} ({value}){again}, {line}", progress.point + 1, values.len())).into_owned()
+        };
+        self.see_search(&progress.search, (progress.point, progress.pass), progress.starts, &named)
+    }
+
+    fn see_search(&self, progress: &Progress, of: (usize, usize), starts: usize, named: &dyn Fn(String) -> String) -> bool {
         // A thread that panicked holds no state that matters.
         let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if state.of != of {
+            (state.of, state.best) = (of, None);
+        }
         if progress.step + 1 == self.steps && state.best.is_none_or(|best| better([progress.goal, progress.violation], best)) {
             state.best = Some([progress.goal, progress.violation]);
         }
         if state.told.elapsed() >= if self.terminal { ON_A_TERMINAL } else { IN_A_FILE } {
             state.told = Instant::now();
-            let text = self.line(progress, state.best);
+            let text = named(self.line(progress, starts, state.best));
             if self.terminal {
                 let bar = state.bar.get_or_insert_with(ProgressBar::new_spinner);
                 bar.set_message(text);
@@ -174,7 +199,7 @@ impl<'a> Watch<'a> {
         !self.stop.load(Ordering::Relaxed)
     }
 
-    fn line(&self, progress: &Progress, best: Option<[f64; 2]>) -> String {
+    fn line(&self, progress: &Progress, starts: usize, best: Option<[f64; 2]>) -> String {
         let step = if self.steps > 1 { format!(", step {} of {}", progress.step + 1, self.steps) } else { String::new() };
         let best = match best {
             None => "on the way to a first design".to_owned(),
@@ -183,11 +208,11 @@ impl<'a> Watch<'a> {
             }
             Some([goal, _]) => format!("{} so far, all limits kept", self.wording.show(goal)),
         };
-        format!("start {} of {}{step}, iteration {}: {best}", progress.start + 1, self.starts, progress.iteration)
+        format!("start {} of {}{step}, iteration {}: {best}", progress.start + 1, starts, progress.iteration)
     }
 
     /// Takes the line away.
-    fn done(self) {
+    pub(super) fn done(self) {
         if let Some(bar) = self.state.into_inner().ok().and_then(|state| state.bar) {
             bar.finish_and_clear();
         }

@@ -4,7 +4,8 @@ use forcewright_study::nlp::Stop;
 use forcewright_study::optimise::{Active, Run};
 use serde_json::{Map, Value, json};
 
-use super::{Optimised, pages};
+use super::{Optimised, Robust, Robustness, pages};
+use crate::tolerance::document::of_yield;
 
 impl Optimised {
     /// The object `study` of the result document. Numbers that are not finite become `null`.
@@ -33,7 +34,9 @@ impl Optimised {
             "stop": best.map(|b| word(b.stop)),
             "kkt_residual": best.map(|b| b.kkt_residual),
             "violation": best.map(|b| b.violation),
-            "margin": self.margin,
+            "margin": self.reserve.margin,
+            "tightened": self.tightened.iter().map(|(name, by, unit)| json!({ "name": name, "by": by, "unit": unit })).collect::<Vec<_>>(),
+            "robust": self.robustness.as_ref().map(robust),
             "active": best.map_or_else(Vec::new, |b| pages::both_sides(b).iter().map(|a| self.active(b, a)).collect()),
             "interrupted": self.search.interrupted,
             "best": self.search.best,
@@ -64,8 +67,21 @@ impl Optimised {
     }
 }
 
+/// What limits were kept against.
+fn robust(found: &Robustness) -> Value {
+    let (against, percentile) = match found.against {
+        Robust::Percentile(part) => ("percentile", Some(part)),
+        Robust::WorstCase => ("worst_case", None),
+    };
+    let [before, after] = [0, 1].map(|i| found.yields[i].as_ref().map(of_yield));
+    json!({
+        "against": against, "percentile": percentile, "numbers": found.scattering, "looks": found.rounds, "settled": found.settled,
+        "yield_before": before, "yield_after": after,
+    })
+}
+
 /// A way to end, for scripts.
-fn word(stop: Stop) -> &'static str {
+pub(crate) fn word(stop: Stop) -> &'static str {
     match stop {
         Stop::Converged => "converged",
         Stop::Settled => "settled",

@@ -9,8 +9,9 @@ use forcewright_model::{
 };
 use forcewright_study::nlp::Stop;
 use forcewright_study::optimise::{Active, Run};
+use forcewright_study::sampling::Yield;
 
-use super::{Optimised, wording};
+use super::{Optimised, Robust, Robustness, wording};
 
 /// Basins named in a table.
 const MOST_BASINS: usize = 12;
@@ -18,6 +19,34 @@ const MOST_BASINS: usize = 12;
 const FEW_RUNS: usize = 8;
 /// A violation that needs no word, relative to the scale of its limit.
 const KEPT: f64 = 1e-4;
+
+/// What the scatter of making does before and after.
+fn robustness_in_words(found: &Robustness) -> String {
+    let against = match found.against {
+        Robust::Percentile(part) => format!("so far inside that {} % of the designs made keep each", format_number(100.0 * part, 4)),
+        Robust::WorstCase => "so far inside that all tolerances at their worst ends keep each".to_owned(),
+    };
+    let percent = |v: f64| format_number(100.0 * v, 3);
+    let part = |drawn: &Option<Yield>| match drawn {
+        Some(y) => {
+            format!("{} % ({} to {} %)", percent(y.estimate.value), percent(y.estimate.interval.low), percent(y.estimate.interval.high))
+        }
+        None => "none can be drawn".to_owned(),
+    };
+    let [before, after] = &found.yields;
+    let rest = if found.settled {
+        ""
+    } else {
+        " The limits had not come to rest, or the scatter could not be looked at: not all of this is kept."
+    };
+    format!(
+        "Every limit was moved {against}, by the linearised scatter of {} numbers, looked at {} times. All requirements that a tolerance study sees are met by {} of the designs drawn, by {} of those drawn around the design of the file.{rest}",
+        found.scattering,
+        found.rounds,
+        part(after),
+        part(before),
+    )
+}
 
 impl Optimised {
     /// The report of the design found, with the search before it; of the design of the file where none was found.
@@ -64,15 +93,28 @@ impl Optimised {
         if self.search.runs.len() > 1 {
             all.push(say("Starts", self.starts_in_words()));
         }
-        if self.margin > 0.0 {
-            let why = if self.margin > self.margin_asked {
-                "; the full analysis looks between the stations of the search, and found a limit missed by less than that"
-            } else {
-                ", as asked"
-            };
-            all.push(say("Margin", format!("Kept {} % inside every limit{why}.", format_number(100.0 * self.margin, 2))));
-        }
+        all.extend(self.margin_in_words().map(|text| say("Margin", text)));
+        all.extend(self.robustness.as_ref().map(|r| say("Scatter of making", robustness_in_words(r))));
         all
+    }
+
+    fn margin_in_words(&self) -> Option<String> {
+        let mut text = String::new();
+        if self.reserve.margin > 0.0 {
+            let _ = write!(text, "Kept {} % inside every limit, as asked. ", format_number(100.0 * self.reserve.margin, 2));
+        }
+        if !self.tightened.is_empty() {
+            let list = self.tightened.iter().map(|(name, by, unit)| {
+                let unit = wording::display(unit, self.after.as_ref().map(|r| &r.outcome));
+                format!("{name} by {}", format_si(*by, &unit, 2))
+            });
+            let list = list.collect::<Vec<_>>().join(", ");
+            let _ = write!(
+                text,
+                "Kept further inside where the full analysis, which looks between the stations of the search, found a limit missed: {list}."
+            );
+        }
+        (!text.is_empty()).then(|| text.trim_end().to_owned())
     }
 
     /// The goal before and after, SI, of the full analysis where that knows it, with its unit and name.
@@ -96,7 +138,7 @@ impl Optimised {
         format!("{}{named}: {before} before, {after} after.", self.title)
     }
 
-    fn requirements_in_words(&self, best: &Run) -> String {
+    pub(crate) fn requirements_in_words(&self, best: &Run) -> String {
         let Some(after) = &self.after else { return String::new() };
         let asked: Vec<_> = after.outcome.checks.iter().filter(|c| c.required).collect();
         let mut missed: Vec<_> = asked.iter().filter(|c| c.state == CheckState::Missed).collect();
@@ -130,7 +172,7 @@ impl Optimised {
         text
     }
 
-    fn limits_in_words(&self, best: &Run) -> String {
+    pub(crate) fn limits_in_words(&self, best: &Run) -> String {
         let active = both_sides(best);
         if !best.feasible(KEPT) {
             let names: Vec<&str> = active.iter().map(|a| a.name.as_str()).collect();

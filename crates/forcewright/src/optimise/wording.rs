@@ -34,7 +34,10 @@ impl Wording {
         let unit_of = |at: usize| output(at).map_or("1", |o| o.unit);
         let sign = if large { -1.0 } else { 1.0 };
         let (name, unit, form) = match task.steps.last().map(|s| &s.goal) {
-            Some(Goal::Values(weights)) => (objective.to_owned(), weights.first().map_or("1", |(at, _)| unit_of(*at)), Form::Times(sign)),
+            Some(Goal::Values(weights)) => {
+                let (at, weight) = weights.first().copied().unwrap_or((0, sign));
+                (objective.to_owned(), unit_of(at), Form::Times(1.0 / weight))
+            }
             // What is made small is the largest value, whatever the objective is called.
             Some(Goal::Largest { values, scale }) if large => {
                 let name = output(values.start).map_or(objective, |o| o.name.as_str());
@@ -49,6 +52,14 @@ impl Wording {
             Some(Goal::Variables(_)) | None => (objective.to_owned(), "1", Form::Times(sign)),
         };
         Self { name, unit: display(unit, result), objective: objective.to_owned(), large, form }
+    }
+
+    /// The goal of a metric's value, if the goal is that metric but for a factor.
+    pub(super) fn goal(&self, value: f64) -> Option<f64> {
+        match self.form {
+            Form::Times(factor) if self.name == self.objective => Some(value / factor),
+            _ => None,
+        }
     }
 
     /// The value of a goal, SI.

@@ -1,7 +1,7 @@
 //! What is varied: a key of the project file and the values that it takes.
 
 use forcewright_base::text::closest;
-use forcewright_base::units::{Dimension, Quantity, QuantityError};
+use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit};
 use forcewright_contract::family::Family;
 
 use super::{SweepError, refused_call};
@@ -59,6 +59,15 @@ impl Axis {
     /// # Errors
     /// E0130 for a text that is not understood, with an example.
     pub fn parse(text: &str) -> Result<Self, SweepError> {
+        Self::parse_for("--vary", text)
+    }
+
+    /// The same for another option of the command line, which is named in messages.
+    ///
+    /// # Errors
+    /// E0130 for a text that is not understood, with an example.
+    pub fn parse_for(option: &str, text: &str) -> Result<Self, SweepError> {
+        let mistake = |text: &str, why: &str| mistake(option, text, why);
         let Some((key, spec)) = text.split_once('=') else {
             return Err(mistake(text, "it has no `=`"));
         };
@@ -70,7 +79,7 @@ impl Axis {
             return Err(mistake(text, "it has control characters"));
         }
         if ["mechanism", "schema"].contains(&key) {
-            return Err(mistake(text, &format!("`{key}` is the same for all designs of a sweep")));
+            return Err(mistake(text, &format!("`{key}` is the same for all designs")));
         }
         let values = values_of(spec).map_err(|why| mistake(text, &why))?;
         Ok(Self { key: key.to_owned(), spec: spec.to_owned(), values })
@@ -115,8 +124,19 @@ impl Axis {
         }
     }
 
+    /// All its values as typed, `most` at the most; `None` for a sample.
+    pub(crate) fn listed(&self, most: u64) -> Option<Vec<String>> {
+        Some((0..self.len()?.min(most)).map(|at| self.value(Place::Nth(at))).collect())
+    }
+
+    /// The unit of its values, if they are numbers of one quantity: that of the first.
+    pub(crate) fn unit(&self) -> Option<Unit> {
+        self.dimension()?;
+        self.telling().first().and_then(|text| read(plain(text)).ok()).map(|(quantity, _)| quantity.unit)
+    }
+
     /// Quantity of its values, if they are numbers of one quantity.
-    pub(super) fn dimension(&self) -> Option<Dimension> {
+    pub(crate) fn dimension(&self) -> Option<Dimension> {
         match &self.values {
             Values::Range(ends, _) | Values::Sample(ends) => Some(ends.dimension),
             Values::List(items) => {
@@ -128,7 +148,7 @@ impl Axis {
     }
 
     /// The SI value of a text that [`Self::value`] gave, if it is a number.
-    pub(super) fn si(&self, value: &str) -> Option<f64> {
+    pub(crate) fn si(&self, value: &str) -> Option<f64> {
         Quantity::parse(plain(value), self.dimension()?).ok().map(|q| q.si)
     }
 
@@ -164,11 +184,11 @@ fn with_unit(digits: &str, symbol: &str) -> String {
     if symbol.is_empty() { digits.to_owned() } else { format!("{digits} {symbol}") }
 }
 
-fn mistake(text: &str, why: &str) -> SweepError {
+fn mistake(option: &str, text: &str, why: &str) -> SweepError {
     let shown: String = text.chars().take(80).collect();
     refused_call(
         "E0130",
-        format!("`--vary {shown}` is not understood: {why}"),
+        format!("`{option} {shown}` is not understood: {why}"),
         "write a range `design.thickness=0.8mm..1.2mm:9`, a list `design.thickness=0.8mm,1mm`, or words `model.beam=reissner,inextensible`",
     )
 }
@@ -258,6 +278,7 @@ fn quantity_mistake(text: &str, error: &QuantityError) -> String {
         QuantityError::Unit(unit) => unit.to_string(),
         QuantityError::WrongDimension(unit, _) => format!("`{unit}` is the unit of nothing that a project file knows"),
         QuantityError::Tolerance(half) => format!("`{half}` is no tolerance"),
+        QuantityError::Fit(word, why) => format!("`{word}` is no fit: {why}"),
         QuantityError::NotANumber | QuantityError::NoUnit => format!("`{text}` is not a number with its unit"),
     }
 }
@@ -297,13 +318,13 @@ fn plain(text: &str) -> &str {
 
 /// A metric that a family computes.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct MetricColumn {
-    pub(super) name: String,
-    pub(super) dimension: Dimension,
+pub(crate) struct MetricColumn {
+    pub(crate) name: String,
+    pub(crate) dimension: Dimension,
 }
 
 /// Every metric of a family. Any of them may be limited, so the description of `requirements.limits` names them with their quantities.
-pub(super) fn metrics_of(family: &dyn Family) -> Vec<MetricColumn> {
+pub(crate) fn metrics_of(family: &dyn Family) -> Vec<MetricColumn> {
     let schema = family.json_schema();
     let limits = schema.pointer("/properties/requirements/properties/limits/properties").and_then(|l| l.as_object());
     let dimension = |limit: &serde_json::Value| {

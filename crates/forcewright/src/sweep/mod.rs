@@ -29,12 +29,12 @@
 //! # Ok::<(), forcewright::sweep::SweepError>(())
 //! ```
 
-mod axis;
+pub(crate) mod axis;
 mod files;
 mod npy;
 mod plan;
 mod run;
-mod table;
+pub(crate) mod table;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -236,17 +236,8 @@ impl Sweep {
     fn load(&self, settings: &[String]) -> Result<Loaded, Refused> {
         let mut choices = self.choices.clone();
         choices.set.extend_from_slice(settings);
-        Loaded::from_file(&self.files, &self.path, &choices).map_err(|mut refused| {
-            // The last settings were typed as values of `--vary`.
-            let first = refused.sources.iter().count().saturating_sub(settings.len());
-            let mut sources = Sources::default();
-            for (at, source) in refused.sources.iter().enumerate() {
-                let name = if at < first { source.name.as_str() } else { "--vary" };
-                sources.add(name, source.text.as_ref());
-            }
-            refused.sources = sources;
-            refused
-        })
+        // The last settings were typed as values of `--vary`.
+        Loaded::from_file(&self.files, &self.path, &choices).map_err(|refused| refused.typed_as("--vary", settings.len()))
     }
 
     /// Whether a value is no value of its key, or its key no key.
@@ -371,7 +362,7 @@ pub const CODES: &[Explanation] = &[
     code(
         "E0130",
         "what is varied is not understood",
-        "`--vary KEY=SPEC` names a key as `--set` does, and its values: a range with both ends and their number, or a list.\n\n    --vary design.thickness=0.8mm..1.2mm:9\n    --vary design.thickness=0.8mm,1mm,1.2mm\n    --vary model.beam=reissner,inextensible\n\nSeveral `--vary` make the full grid, the first slowest.",
+        "`--vary KEY=SPEC` names a key as `--set` does, and its values: a range with both ends and their number, or a list.\n\n    --vary design.thickness=0.8mm..1.2mm:9\n    --vary design.thickness=0.8mm,1mm,1.2mm\n    --vary model.beam=reissner,inextensible\n\nSeveral `--vary` make the full grid, the first slowest. `forcewright optimise --front KEY=SPEC` takes one key that is a number, with a range or a list.",
     ),
     code(
         "E0131",

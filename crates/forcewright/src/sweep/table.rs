@@ -45,11 +45,11 @@ pub struct Column {
 }
 
 impl Column {
-    fn number(name: impl Into<String>, dimension: Dimension) -> Self {
+    pub(crate) fn number(name: impl Into<String>, dimension: Dimension) -> Self {
         Self { name: name.into(), kind: Kind::Number(Unit::si(dimension).pretty()) }
     }
 
-    fn words(name: impl Into<String>, words: impl IntoIterator<Item = String>) -> Self {
+    pub(crate) fn words(name: impl Into<String>, words: impl IntoIterator<Item = String>) -> Self {
         Self { name: name.into(), kind: Kind::Words(words.into_iter().collect()) }
     }
 
@@ -236,7 +236,7 @@ pub(super) fn lead(plan: &Plan, design: u64, values: &[String]) -> Vec<String> {
 }
 
 /// A line of CSV with its end.
-pub(super) fn line(cells: impl IntoIterator<Item = String>) -> String {
+pub(crate) fn line(cells: impl IntoIterator<Item = String>) -> String {
     let mut out = String::new();
     csv::row(cells, &mut out);
     out

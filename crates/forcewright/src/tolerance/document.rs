@@ -158,7 +158,7 @@ fn estimate(found: &Estimate) -> Value {
     json!({ "value": number(found.value), "interval": interval(found.interval) })
 }
 
-fn of_yield(found: &Yield) -> Value {
+pub(crate) fn of_yield(found: &Yield) -> Value {
     let basis = match found.basis {
         YieldBasis::Replicates => "replicates",
         YieldBasis::Count => "count",

@@ -138,13 +138,22 @@ impl Toleranced {
         let rows = self.needed().into_iter().zip(&study.variables).zip(&self.units).zip(self.population.marginals());
         let rows = rows.map(|(((needed, variable), unit), marginal)| {
             let [path, half, factor, width] = needed;
-            vec![path, format_si(variable.nominal, unit, 5), half, format_si(marginal.sd(), unit, 3), factor, width]
+            vec![
+                path,
+                format_si(variable.nominal, unit, 5),
+                format_si(marginal.mean(), unit, 5),
+                half,
+                format_si(marginal.sd(), unit, 3),
+                factor,
+                width,
+            ]
         });
         table(
             "Numbers that scatter, and the half width that each would need for the target yield, all others as they are",
             &[
                 ("Path", StudyColumn::Code),
                 ("Nominal", StudyColumn::Number),
+                ("Middle", StudyColumn::Number),
                 ("Half width", StudyColumn::Number),
                 ("Standard deviation", StudyColumn::Number),
                 ("Factor", StudyColumn::Number),
