@@ -5,7 +5,7 @@ use forcewright::compliant::{Behaviour, Compliant, Design, Spec, measure};
 use forcewright::contract::family::Mechanism;
 use forcewright::contract::project::Project;
 use forcewright::contract::read;
-use forcewright::{Choices, Loaded, gallery};
+use forcewright::{Choices, Loaded, ToleranceChoices, gallery};
 use forcewright_beam::{
     Axis, BatchSolver, CurveSolver, Derivatives, Network, Output, Parameter, Settings, Shape, Support, Theory, Variant, trace,
 };
@@ -166,6 +166,25 @@ fn batch_1e4_from_numbers(bencher: Bencher<'_, '_>) {
     });
 }
 
+/// A whole tolerance study of 4096 designs of Table 3 at 1e-4 whose nodes, bends and thickness scatter: draws, curves, stress, measures,
+/// counts and causes; the column of items is designs per second. What a study costs whatever its size is in it.
+#[divan::bench(sample_count = 5)]
+fn tolerance_4096(bencher: Bencher<'_, '_>) {
+    const SCATTER: &str = r#"
+[tolerance.parameters]
+"design.nodes.*.at" = { half_width = "0.05 mm" }
+"design.beams.*.bend" = { half_width = 0.01 }
+"#;
+    let set = vec!["model.beam=inextensible".to_owned(), "model.accuracy=1e-4".to_owned()];
+    let project = Loaded::from_text("lan-table3.toml", &format!("{}{SCATTER}", text()), &Choices { variant: None, set });
+    let project = project.unwrap_or_else(|refused| panic!("{}", refused.render(false)));
+    let choices = ToleranceChoices { samples: Some(4096), seed: None };
+    bencher.counter(divan::counter::ItemsCount::new(4096_usize)).bench_local(|| {
+        let found = project.tolerance(choices, &mut |_| true).unwrap_or_else(|error| panic!("{error}"));
+        found.study.all.estimate.value
+    });
+}
+
 /// A network with its free nodes and bends moved by amounts spread evenly over their ranges (additive recurrence with the golden ratio).
 fn variant(network: &Network, index: u32) -> Network {
     let mut new = network.clone();
@@ -221,4 +240,14 @@ fn solve_with_report() -> String {
         Loaded::from_text("lan-table3.toml", black_box(text()), &Choices::default()).map_err(|e| e.render(false)).expect("understood");
     let report = loaded.solve("lan-table3.toml", "", &mut |_| true);
     forcewright::report::html::page(&report)
+}
+
+/// Searches in the paper's box, the first from straight beams, the others spread over the ranges: one, and 64 on all processors.
+#[divan::bench(args = [1, 64], sample_count = 3, sample_size = 1)]
+fn search_starts(bencher: Bencher<'_, '_>, starts: usize) {
+    let text = gallery::find("optimise-lan-box").expect("in the gallery").text;
+    let loaded = Loaded::from_text("box.toml", text, &Choices::default()).map_err(|e| e.render(false)).expect("understood");
+    let (task, _) = loaded.task().map_err(|e| e.render(false)).expect("a task");
+    let settings = forcewright::study::optimise::Settings { starts, seed: 3, ..Default::default() };
+    bencher.bench_local(|| forcewright::study::optimise::search(&task, black_box(&settings), &|_| true));
 }
