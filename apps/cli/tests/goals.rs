@@ -75,7 +75,7 @@ fn the_least_mass_is_that_of_the_closed_form() {
     assert_near(buys("requirements.stress"), -0.02, 3e-2, "stress");
     // People are shown grams.
     let shown = run(folder.path(), &["optimise", "a.toml", "--out", "out"]).stdout;
-    assert!(shown.contains("`mass` as small as possible: 31.4 g before, 7.852 g after"), "{shown}");
+    assert!(shown.contains("`mass` as small as possible: 31.4 g before, 7.85 g after"), "{shown}");
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     assert!(page.contains("mass") && page.contains("7.85"), "no mass in the report");
 }
