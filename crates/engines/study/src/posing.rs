@@ -299,6 +299,12 @@ impl Problem for Posing<'_> {
         &self.constraint_upper
     }
 
+    /// The largest value is subtracted only; the half width is multiplied by levels, which may be free.
+    fn is_linear(&self, variable: usize) -> bool {
+        let fixed = || self.step.bands.iter().all(|band| band.level.is_some());
+        self.top() == Some(variable) && (matches!(self.step.goal, Goal::Largest { .. }) || fixed())
+    }
+
     fn evaluate(&mut self, y: &[f64], gradients: bool, out: &mut Values) -> Result<(), Rejected> {
         let x = self.design(y);
         if !self.current || x != self.x {

@@ -32,6 +32,8 @@ pub(super) struct Model<'p> {
     scale: Vec<f64>,
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
+    /// Whether all is linear in a variable.
+    pub(super) linear: Vec<bool>,
     pub(super) row_lower: Vec<f64>,
     pub(super) row_upper: Vec<f64>,
     objective_scale: f64,
@@ -85,6 +87,7 @@ impl<'p> Model<'p> {
             .collect();
         let bound = |b: &[f64]| free.iter().zip(&scale).map(|(&j, s)| (b[j] - origin[j]) / s).collect::<Vec<_>>();
         let (lower, upper) = (bound(&low), bound(&high));
+        let linear = free.iter().map(|&j| problem.is_linear(j)).collect();
         let mut model = Self {
             problem,
             x: origin.clone(),
@@ -93,6 +96,7 @@ impl<'p> Model<'p> {
             origin,
             lower,
             upper,
+            linear,
             row_lower: unbounded_as_infinite(&row_lower),
             row_upper: unbounded_as_infinite(&row_upper),
             objective_scale: 1.0,
@@ -111,6 +115,11 @@ impl<'p> Model<'p> {
 
     pub(super) fn variables(&self) -> usize {
         self.free.len()
+    }
+
+    /// Largest change of a variable in which not all is linear, in its scale.
+    pub(super) fn length(&self, step: &[f64]) -> f64 {
+        step.iter().zip(&self.linear).filter(|(_, linear)| !**linear).fold(0.0, |m, (d, _)| m.max(d.abs()))
     }
 
     /// Scales from the values at the start. A constraint far from its limit compared to its gradient is scaled by that distance: its

@@ -19,6 +19,12 @@ pub trait Problem {
     /// Upper bounds of the constraints; `inf` for none.
     fn constraint_upper(&self) -> &[f64];
 
+    /// Whether the derivatives by this variable are constants, whatever the values of all. Then its part of a step is believed at any
+    /// length. A bound on largest values is such a variable: held back, it would hold back those that raise the values.
+    fn is_linear(&self, _variable: usize) -> bool {
+        false
+    }
+
     /// Values at `x`, which is always inside the bounds, and derivatives too where `gradients` is true.
     ///
     /// A call with `gradients` follows a call without at the same point, except for the start and, where variables are fixed, the end;

@@ -11,8 +11,8 @@ use super::qp::{Answer, Outcome, QpSolver};
 use super::subproblem::Subproblem;
 use super::walls::Walls;
 
-/// Largest step of a variable at the beginning, in its scale: no linearisation is believed beyond. It grows with success and shrinks with
-/// failure.
+/// Largest step of a variable at the beginning, in its scale, unless all is linear in it: no linearisation is believed beyond. It grows
+/// with success and shrinks with failure.
 const FIRST_REACH: f64 = 1.0;
 /// A reach below this is next to nothing.
 const LEAST_REACH: f64 = 1e-9;
@@ -213,7 +213,7 @@ impl Search<'_, '_> {
         if !feasible {
             return None;
         }
-        let fair = self.reach >= FAIR_REACH || answer.step.iter().all(|d| d.abs() < 0.99 * self.reach);
+        let fair = self.reach >= FAIR_REACH || self.model.length(&answer.step) < 0.99 * self.reach;
         let predicted = if fair { gain } else { f64::INFINITY };
         let least = self.settings.least_gain * best.objective.abs();
         (least > 0.0 && self.patience.settled(best.objective, predicted, least)).then_some(Stop::Settled)
@@ -319,7 +319,7 @@ impl Search<'_, '_> {
     /// Moves to a better point and learns from it, or shortens the reach; false if there is nothing left to try.
     fn advance(&mut self, linear: &Subproblem, answer: &Answer, gain: f64) -> bool {
         let qp = linear.qp(&self.point, self.hessian.matrix(), &self.point.gradient, self.price.unwrap_or(f64::INFINITY));
-        let length = answer.step.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+        let length = self.model.length(&answer.step);
         self.drowned = if gain > 1e-15 * self.point.objective.abs().max(1e-3) { 0 } else { self.drowned + 1 };
         if self.walls.stand() {
             // Near a region of rejection a detour may lead into a corner: only a fall is believed.

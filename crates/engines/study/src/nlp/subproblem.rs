@@ -20,7 +20,8 @@ impl Subproblem {
         let mut lower = minus(&model.lower, &point.z);
         let mut upper = minus(&model.upper, &point.z);
         // Rounding must not put the present point outside.
-        for (l, u) in lower.iter_mut().zip(&mut upper) {
+        for ((l, u), linear) in lower.iter_mut().zip(&mut upper).zip(&model.linear) {
+            let reach = if *linear { f64::INFINITY } else { reach };
             (*l, *u) = (l.clamp(-reach, 0.0), u.clamp(0.0, reach));
         }
         let mut row_lower = minus(&model.row_lower, &point.constraints);
