@@ -3,8 +3,8 @@
 //! | layer | folders | may see |
 //! | --- | --- | --- |
 //! | 0 | `crates/base` | nothing |
-//! | 1 | `crates/engines/*`, `crates/model` | base; engines also `curves` and `elements` |
-//! | 2 | `crates/contract`, `crates/outputs/*` | contract: layers 0 and 1; outputs: base and model |
+//! | 1 | `crates/engines/*`, `crates/model` | base and `curves`; engines also `elements` |
+//! | 2 | `crates/contract`, `crates/outputs/*` | contract: layers 0 and 1; outputs: base, model and `curves` |
 //! | 3 | `crates/mechanisms/*` | layers 0 to 2 without outputs |
 //! | 4 | `crates/forcewright` | layers 0 to 3 |
 //! | 5 | `apps/*`, `benchmarks` | layers 0 to 4 |
@@ -72,13 +72,14 @@ impl<'a> Room<'a> {
         };
         match (self, other) {
             (Self::Engine(_), Self::Engine("curves" | "elements")) => None,
+            (Self::Model | Self::Output(_), Self::Engine("curves")) => None,
             (Self::Engine(_), Self::Engine(_)) => Some("of its peers an engine may use only `curves` and `elements`"),
             (Self::Engine(_), Self::Model) => Some("engines are physics: what outputs understand is not theirs"),
-            (Self::Model, Self::Engine(_)) => Some("the model is pure data and sees only the base"),
+            (Self::Model, Self::Engine(_)) => Some("the model is pure data and sees only the base and `curves`"),
             (Self::Mechanism(_), Self::Mechanism(_)) => Some("mechanisms are blind to each other"),
             (Self::Mechanism(_), Self::Output(_)) => Some("mechanisms are blind to outputs"),
             (Self::Output(_), Self::Output(_)) => Some("outputs are blind to each other"),
-            (Self::Output(_), Self::Contract | Self::Engine(_)) => Some("outputs see only the model and the base"),
+            (Self::Output(_), Self::Contract | Self::Engine(_)) => Some("outputs see only the model, the base and `curves`"),
             (Self::Contract, Self::Output(_)) => Some("the contract is blind to outputs"),
             (Self::App(_), Self::App(_)) => Some("applications are blind to each other"),
             _ if above <= below => Some("dependencies point down only"),
