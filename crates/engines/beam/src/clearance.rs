@@ -55,6 +55,43 @@ impl Reflection {
     }
 }
 
+/// Where another copy of the network is: mirrored, shifted, or both, mirrored first.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Image {
+    /// The line that it is mirrored on, if it is.
+    pub reflection: Option<Reflection>,
+    /// How far it is shifted, m.
+    pub shift_m: [f64; 2],
+}
+
+impl Image {
+    /// Where a point of the network is in the copy, m.
+    pub fn of(&self, point_m: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.reflection.map_or(point_m, |r| r.image(point_m));
+        [x + self.shift_m[0], y + self.shift_m[1]]
+    }
+
+    /// A vector seen in the copy.
+    fn turn(&self, vector: [f64; 2]) -> [f64; 2] {
+        self.reflection.map_or(vector, |r| r.turn(vector))
+    }
+
+    fn is_shifted(&self) -> bool {
+        self.shift_m != [0.0; 2]
+    }
+
+    /// Whether a box stays parallel to the axes.
+    fn keeps_axes(&self) -> bool {
+        self.reflection.is_none_or(|r| r.direction[0] == 0.0 || r.direction[1] == 0.0)
+    }
+}
+
+impl From<Reflection> for Image {
+    fn from(reflection: Reflection) -> Self {
+        Self { reflection: Some(reflection), ..Self::default() }
+    }
+}
+
 /// A place on the axis of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
@@ -62,7 +99,7 @@ pub struct Place {
     pub beam: usize,
     /// Where along it, in [0, 1].
     pub u: f64,
-    /// There, m; of a mirrored beam its image.
+    /// There, m; of a copy there.
     pub point_m: [f64; 2],
 }
 
@@ -75,30 +112,29 @@ pub struct Clearance {
     pub first: Place,
     /// The place nearest to it.
     pub second: Place,
-    /// Whether the second place is on the mirror image.
-    pub mirrored: bool,
+    /// The copy on which the second place is, by its index; `None` on the drawn network.
+    pub image: Option<usize>,
 }
 
-/// The smallest distance between the surfaces of beams at rest, or in an equilibrium of the network; with a reflection, also to the
-/// mirror image. `None` if no two places are nearest to each other, as in a single straight beam, or if the network has not passed
+/// The smallest distance between the surfaces of beams at rest, or in an equilibrium of the network; also to copies of it, which move
+/// alike. `None` if no two places are nearest to each other, as in a single straight beam, or if the network has not passed
 /// [`Network::check`]. The state must be one of this network.
 ///
 /// The search begins at the nearest of 33 places per axis and ends at rounding; the thickness is that at the two places.
-pub fn clearance(network: &Network, state: Option<&Point>, reflection: Option<Reflection>) -> Option<Clearance> {
-    if !is_sound(network, state, reflection) {
+pub fn clearance(network: &Network, state: Option<&Point>, images: &[Image]) -> Option<Clearance> {
+    if !is_sound(network, state, images) {
         return None;
     }
     let strands: Vec<Strand<'_>> = (0..network.beams.len()).map(|beam| Strand::new(network, state, beam)).collect();
-    let joints = Joints::of(network, reflection.as_ref());
-    let search = Search { strands: &strands, joints: &joints, reflection, size_m: joints.size_m };
+    let joints = Joints::of(network, images);
+    let search = Search { strands: &strands, joints: &joints, images, size_m: joints.size_m };
     let mut best: Option<Clearance> = None;
-    for mirrored in [false, true] {
-        if mirrored && reflection.is_none() {
-            continue;
-        }
+    for image in [None].into_iter().chain((0..images.len()).map(Some)) {
+        // What a beam is to the mirror image of another one, that one is to its image; not so for what is shifted.
+        let ordered = image.is_some_and(|i| images[i].is_shifted());
         for first in 0..strands.len() {
-            for second in first..strands.len() {
-                search.pair(Pair { first, second, mirrored }, &mut best);
+            for second in (if ordered { 0 } else { first })..strands.len() {
+                search.pair(Pair { first, second, image }, &mut best);
             }
         }
     }
@@ -107,26 +143,26 @@ pub fn clearance(network: &Network, state: Option<&Point>, reflection: Option<Re
 
 /// The same pair of places in another state, or of the beams between them what has become of it; `None` where no two places of those
 /// beams are nearest to each other any more. Cheaper than [`clearance`], but another pair may have become nearer.
-pub fn clearance_near(network: &Network, state: Option<&Point>, reflection: Option<Reflection>, known: &Clearance) -> Option<Clearance> {
-    if !is_sound(network, state, reflection) {
+pub fn clearance_near(network: &Network, state: Option<&Point>, images: &[Image], known: &Clearance) -> Option<Clearance> {
+    if !is_sound(network, state, images) {
         return None;
     }
     let strands: Vec<Strand<'_>> = (0..network.beams.len()).map(|beam| Strand::bare(network, state, beam)).collect();
-    let joints = Joints::of(network, reflection.as_ref());
-    let search = Search { strands: &strands, joints: &joints, reflection, size_m: joints.size_m };
-    let pair = Pair { first: known.first.beam, second: known.second.beam, mirrored: known.mirrored };
-    if pair.first.max(pair.second) >= strands.len() {
+    let joints = Joints::of(network, images);
+    let search = Search { strands: &strands, joints: &joints, images, size_m: joints.size_m };
+    let pair = Pair { first: known.first.beam, second: known.second.beam, image: known.image };
+    if pair.first.max(pair.second) >= strands.len() || known.image.is_some_and(|i| i >= images.len()) {
         return None;
     }
     search.settle(pair, [known.first.u, known.second.u])
 }
 
-/// Whether nodes exist, the state has all beams, and a mirror line has a direction.
-fn is_sound(network: &Network, state: Option<&Point>, reflection: Option<Reflection>) -> bool {
+/// Whether nodes exist, the state has all beams, and mirror lines have a direction.
+fn is_sound(network: &Network, state: Option<&Point>, images: &[Image]) -> bool {
     let nodes = network.nodes.len();
     network.beams.iter().all(|b| b.start < nodes && b.end < nodes)
         && state.is_none_or(|s| s.beams.len() == network.beams.len())
-        && reflection.is_none_or(|r| unit(r.direction).is_some())
+        && images.iter().all(|i| i.reflection.is_none_or(|r| unit(r.direction).is_some()) && i.shift_m.iter().all(|s| s.is_finite()))
 }
 
 /// Half the thickness of a beam at a place, m.
@@ -239,13 +275,13 @@ struct Joints {
     place: Vec<[usize; 2]>,
     /// Per beam and end: the node, which as a rigid body joins ends at different places.
     node: Vec<[usize; 2]>,
-    /// Per place: whether it lies on the mirror line.
-    on_line: Vec<bool>,
+    /// Per copy and place: whether it is at the same place there, as on a mirror line.
+    shared: Vec<Vec<bool>>,
     size_m: f64,
 }
 
 impl Joints {
-    fn of(network: &Network, reflection: Option<&Reflection>) -> Self {
+    fn of(network: &Network, images: &[Image]) -> Self {
         let lengths = network.beams.iter().map(|b| b.shape.length_m());
         let size_m = lengths.fold(0.0, f64::max);
         // Ends on the arms of a rigid body are where the arms end; two clamps at the same place are one place of the ground.
@@ -261,38 +297,40 @@ impl Joints {
         let end = |(node, arm): (usize, [f64; 2])| [0, 1].map(|i| network.nodes[node].position_m[i] + arm[i]);
         let place = network.beams.iter().map(|b| ends(b).map(|e| number(end(e)))).collect();
         let node = network.beams.iter().map(|b| [b.start, b.end]).collect();
-        let on_line = known.iter().map(|p| reflection.is_some_and(|r| distance(r.image(*p), *p) <= TOUCH * size_m)).collect();
-        Self { place, node, on_line, size_m }
+        let stays = |image: &Image| known.iter().map(|p| distance(image.of(*p), *p) <= TOUCH * size_m).collect();
+        let shared = images.iter().map(stays).collect();
+        Self { place, node, shared, size_m }
     }
 }
 
-/// Two axes, the second perhaps mirrored.
+/// Two axes, the second perhaps of a copy.
 #[derive(Clone, Copy)]
 struct Pair {
     first: usize,
     second: usize,
-    mirrored: bool,
+    image: Option<usize>,
 }
 
 struct Search<'a> {
     strands: &'a [Strand<'a>],
     joints: &'a Joints,
-    reflection: Option<Reflection>,
+    images: &'a [Image],
     size_m: f64,
 }
 
 impl Search<'_> {
     fn image(&self, pair: Pair, point: [f64; 2]) -> [f64; 2] {
-        match self.reflection {
-            Some(reflection) if pair.mirrored => reflection.image(point),
-            _ => point,
-        }
+        pair.image.map_or(point, |i| self.images[i].of(point))
     }
 
-    /// A direction seen in the mirror.
+    /// A direction seen in the copy.
     fn turned(&self, pair: Pair, vector: [f64; 2]) -> [f64; 2] {
-        let (zero, tip) = (self.image(pair, [0.0; 2]), self.image(pair, vector));
-        [tip[0] - zero[0], tip[1] - zero[1]]
+        pair.image.map_or(vector, |i| self.images[i].turn(vector))
+    }
+
+    /// Whether a joint is at the same place in the copy.
+    fn is_shared(&self, pair: Pair, joint: usize) -> bool {
+        pair.image.is_some_and(|i| self.joints.shared[i][joint])
     }
 
     /// The smallest distance of a pair of beams, where it is below the best so far.
@@ -300,14 +338,15 @@ impl Search<'_> {
         let (one, other) = (&self.strands[pair.first], &self.strands[pair.second]);
         let halves = one.half_m + other.half_m;
         let corners = [self.image(pair, other.low), self.image(pair, other.high)];
-        let skewed = self.reflection.is_some_and(|r| pair.mirrored && r.direction[0] != 0.0 && r.direction[1] != 0.0);
+        let skewed = pair.image.is_some_and(|i| !self.images[i].keeps_axes());
         let limit = |best: &Option<Clearance>| best.map_or(f64::INFINITY, |b| b.distance_m + halves);
         if !skewed && apart(one, corners) >= limit(best) {
             return;
         }
         let points: Vec<[f64; 2]> = other.points.iter().map(|p| self.image(pair, *p)).collect();
-        for (i, j, distance_m) in least(&one.points, &points, pair.first == pair.second) {
-            if pair.first == pair.second && !pair.mirrored && i == j {
+        let symmetric = pair.first == pair.second && !pair.image.is_some_and(|i| self.images[i].is_shifted());
+        for (i, j, distance_m) in least(&one.points, &points, symmetric) {
+            if pair.first == pair.second && pair.image.is_none() && i == j {
                 continue;
             }
             // Between the samples it can be nearer by about a chord.
@@ -382,7 +421,7 @@ impl Search<'_> {
     /// Whether a local minimum on two beams is one on the whole network, and its distance.
     fn judge(&self, pair: Pair, [u, v]: [f64; 2]) -> Option<Clearance> {
         let (one, other) = (&self.strands[pair.first], &self.strands[pair.second]);
-        if pair.first == pair.second && !pair.mirrored && (u - v).abs() < SAME {
+        if pair.first == pair.second && pair.image.is_none() && (u - v).abs() < SAME {
             return None;
         }
         let (p, q) = (one.at(u), self.image(pair, other.at(v)));
@@ -390,24 +429,24 @@ impl Search<'_> {
         let axes_m = distance(p, q);
         if let (Some(a), Some(b)) = (node, other_node)
             && a == b
-            && (!pair.mirrored || self.joints.on_line[a])
+            && (pair.image.is_none() || self.is_shared(pair, a))
         {
             return None;
         }
         // Two ends on a rigid body stay as far apart as they were made.
         let body = |beam: usize, u: f64| end_at(u).map(|end| self.joints.node[beam][end]);
-        if !pair.mirrored && body(pair.first, u).is_some_and(|a| body(pair.second, v) == Some(a)) {
+        if pair.image.is_none() && body(pair.first, u).is_some_and(|a| body(pair.second, v) == Some(a)) {
             return None;
         }
         // A beam that meets its image on the line does so in one joint.
-        if pair.mirrored && pair.first == pair.second && axes_m <= TOUCH * self.size_m && node.is_some_and(|n| self.joints.on_line[n]) {
+        if pair.first == pair.second && axes_m <= TOUCH * self.size_m && node.is_some_and(|n| self.is_shared(pair, n)) {
             return None;
         }
         if axes_m > TOUCH * self.size_m {
             let towards = [(q[0] - p[0]) / axes_m, (q[1] - p[1]) / axes_m];
             let back = self.turned(pair, towards);
             let comes_nearer = |node: Option<usize>, towards: [f64; 2]| {
-                node.is_some_and(|n| self.leaving(n, pair.mirrored).any(|along| dot(along, towards) > FLAT))
+                node.is_some_and(|n| self.leaving(pair, n).any(|along| dot(along, towards) > FLAT))
             };
             // A reflection is its own inverse: what the image sees is turned back.
             if comes_nearer(node, towards) || comes_nearer(other_node, [-back[0], -back[1]]) {
@@ -420,7 +459,7 @@ impl Search<'_> {
             distance_m: axes_m - halves,
             first: Place { beam: pair.first, u, point_m: p },
             second: Place { beam: pair.second, u: v, point_m: q },
-            mirrored: pair.mirrored,
+            image: pair.image,
         })
     }
 
@@ -429,14 +468,14 @@ impl Search<'_> {
         end_at(u).map(|end| self.joints.place[beam][end])
     }
 
-    /// Unit vectors along all beams that leave a joint, with their images if it lies on the mirror line.
-    fn leaving(&self, joint: usize, mirrored: bool) -> impl Iterator<Item = [f64; 2]> {
-        let on_line = mirrored && self.joints.on_line[joint];
+    /// Unit vectors along all beams that leave a joint, with those of the copy if it shares the joint.
+    fn leaving(&self, pair: Pair, joint: usize) -> impl Iterator<Item = [f64; 2]> {
+        let shared = self.is_shared(pair, joint);
         self.strands.iter().flat_map(move |strand| {
             let ends = (0..2).filter(move |end| self.joints.place[strand.beam][*end] == joint);
             ends.flat_map(move |end| {
                 let along = strand.away(end);
-                let image = on_line.then(|| self.turned(Pair { first: 0, second: 0, mirrored: true }, along));
+                let image = shared.then(|| self.turned(pair, along));
                 [Some(along), image].into_iter().flatten()
             })
         })

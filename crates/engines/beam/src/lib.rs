@@ -35,7 +35,7 @@ mod state;
 mod stepping;
 mod through;
 
-pub use clearance::{Clearance, Place, Reflection, clearance, clearance_near};
+pub use clearance::{Clearance, Image, Place, Reflection, clearance, clearance_near};
 pub use counters::Counters;
 pub use error::{NetworkError, PathError, Status};
 pub use fast::{BatchSolver, CurveSolver, CurveStates, DesignError, Response, Variant};

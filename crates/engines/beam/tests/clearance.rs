@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::{POM, SplitMix, close, node, random_network, rigid, solve, table3_by_nodes};
 use forcewright_base::maths;
-use forcewright_beam::{Clearance, Drive, Network, Point, Reflection, Section, Shape, Support, clearance};
+use forcewright_beam::{Clearance, Drive, Image, Network, Point, Reflection, Section, Shape, Support, clearance};
 
 /// Beams between clamps, each from a start with its angle coefficients and length; 1 mm thick.
 fn loose(beams: &[([f64; 2], &[f64], f64)]) -> Network {
@@ -22,7 +22,7 @@ fn loose(beams: &[([f64; 2], &[f64], f64)]) -> Network {
 }
 
 fn at_rest(beams: &[([f64; 2], &[f64], f64)]) -> Option<Clearance> {
-    clearance(&loose(beams), None, None)
+    clearance(&loose(beams), None, &[])
 }
 
 #[track_caller]
@@ -45,7 +45,7 @@ fn straight_beams() {
     );
     let crossing = is(at_rest(&[([0.0, 0.0], &[0.0], 0.1), ([0.037, -0.02], &[1.2], 0.1)]), 0.0, "crossing");
     close(crossing.first.u, (0.037 + 0.02 / maths::tan(1.2)) / 0.1, 1e-9, "place of the crossing");
-    assert!((crossing.first.beam, crossing.second.beam, crossing.mirrored) == (0, 1, false));
+    assert!((crossing.first.beam, crossing.second.beam, crossing.image) == (0, 1, None));
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn beams_that_share_a_joint() {
             network.nodes.push(node(at, Support::Free));
             network.beams.push(rigid(from, network.nodes.len() - 1, shape, section));
         }
-        clearance(&network, None, None)
+        clearance(&network, None, &[])
     };
     // Straight apart, however narrow the angle; the chain goes on straight.
     for angle in [1e-3, 0.05, 0.4, 2.0] {
@@ -115,33 +115,50 @@ fn a_chain_is_not_near_itself() {
         network.nodes.push(node(at, Support::Free));
         network.beams.push(rigid(network.nodes.len() - 2, network.nodes.len() - 1, shape, POM));
     }
-    assert!(clearance(&network, None, None).is_none());
+    assert!(clearance(&network, None, &[]).is_none());
+}
+
+/// A copy, shifted or mirrored and shifted, counts as if it were drawn. Its pairs are not symmetric: an inclined beam comes near to the
+/// one above it with its other end.
+#[test]
+fn shifted_copies() {
+    let beams: [([f64; 2], &[f64], f64); 2] = [([0.0, 0.0], &[0.5, 0.3], 0.05), ([0.0, 0.02], &[0.4, -0.6, 0.2], 0.04)];
+    let mirrored: [([f64; 2], &[f64], f64); 2] = [([0.14, 0.0], &[PI - 0.5, -0.3], 0.05), ([0.14, 0.02], &[PI - 0.4, 0.6, -0.2], 0.04)];
+    let line = Reflection { point_m: [0.07, 0.0], direction: [0.0, 1.0] };
+    for [x, y] in [[0.0, 0.05], [0.01, -0.06], [0.09, 0.002]] {
+        for (copies, reflection) in [(&beams, None), (&mirrored, Some(line))] {
+            let copies: Vec<_> = copies.iter().map(|(at, shape, length)| ([at[0] + x, at[1] + y], *shape, *length)).collect();
+            let wanted = at_rest(&[&beams[..], &copies[..]].concat()).expect("a distance");
+            let found = clearance(&loose(&beams), None, &[Image { reflection, shift_m: [x, y] }]).expect("a distance");
+            close(found.distance_m, wanted.distance_m, 1e-13, "shifted");
+        }
+    }
 }
 
 #[test]
 fn mirror_images() {
-    let line = |x: f64| Some(Reflection { point_m: [x, 7.0], direction: [0.0, -3.0] });
+    let line = |x: f64| Image::from(Reflection { point_m: [x, 7.0], direction: [0.0, -3.0] });
     let network = loose(&[([0.01, 0.0], &[FRAC_PI_2 + 0.6, -1.2], 0.05)]);
     let lean = network.beams[0].shape.point_m(0.5)[0];
-    let found = is(clearance(&network, None, line(-0.002)), 2.0 * (0.012 + lean), "bulges towards the line");
-    assert!(found.mirrored && found.first.beam == found.second.beam);
+    let found = is(clearance(&network, None, &[line(-0.002)]), 2.0 * (0.012 + lean), "bulges towards the line");
+    assert!(found.image == Some(0) && found.first.beam == found.second.beam);
     close(found.first.point_m[0] + found.second.point_m[0], -0.004, 1e-13, "images");
     // The same, turned by 0.4 rad about the origin.
     let turned = loose(&[([0.01 * maths::cos(0.4), 0.01 * maths::sin(0.4)], &[FRAC_PI_2 + 1.0, -1.2], 0.05)]);
     let [x, y] = [-0.002 * maths::cos(0.4), -0.002 * maths::sin(0.4)];
     let oblique = Reflection { point_m: [x, y], direction: [-maths::sin(0.4), maths::cos(0.4)] };
-    is(clearance(&turned, None, Some(oblique)), 2.0 * (0.012 + lean), "oblique");
+    is(clearance(&turned, None, &[oblique.into()]), 2.0 * (0.012 + lean), "oblique");
     // A beam that starts on the line meets its image in a joint there.
     let network = loose(&[([0.0, 0.0], &[0.3], 0.05)]);
-    assert!(clearance(&network, None, line(0.0)).is_none());
-    is(clearance(&loose(&[([0.01, 0.0], &[PI], 0.05)]), None, line(0.0)), 0.0, "through the line");
+    assert!(clearance(&network, None, &[line(0.0)]).is_none());
+    is(clearance(&loose(&[([0.01, 0.0], &[PI], 0.05)]), None, &[line(0.0)]), 0.0, "through the line");
 }
 
 #[test]
 fn thickness_of_both_beams_counts() {
     let mut network = loose(&[([0.0, 0.0], &[0.0], 0.1), ([0.0, 0.02], &[0.0], 0.1)]);
     network.beams[1].section.thickness_m = 5e-3;
-    close(clearance(&network, None, None).expect("a distance").distance_m, 0.02 - 3e-3, 1e-15, "1 mm and 5 mm");
+    close(clearance(&network, None, &[]).expect("a distance").distance_m, 0.02 - 3e-3, 1e-15, "1 mm and 5 mm");
 }
 
 /// Distance of two axes at two places, by the engine's positions.
@@ -226,7 +243,7 @@ fn random_networks_against_walking() {
         let Ok(path) = forcewright_beam::trace(&network, &[0.0, 8e-3], &settings, &mut |_| true) else { continue };
         for point in &path.points {
             let wanted = by_walking(&network, point);
-            let found = clearance(&network, Some(point), None).map_or(f64::INFINITY, |c| c.distance_m);
+            let found = clearance(&network, Some(point), &[]).map_or(f64::INFINITY, |c| c.distance_m);
             if wanted.is_infinite() || found.is_infinite() {
                 assert_eq!(wanted.is_infinite(), found.is_infinite(), "{trial}: {found} by the engine, {wanted} by walking");
                 continue;
@@ -244,12 +261,12 @@ fn the_paper_mechanism_at_rest_and_pushed() {
     let network = table3_by_nodes(POM);
     let path = solve(&network, &[0.0, 6.8e-3, 13.6e-3], &common::elastica());
     let line = Reflection { point_m: [0.0, 0.0], direction: [0.0, 1.0] };
-    let rest = clearance(&network, None, Some(line)).expect("a distance");
-    let same = clearance(&network, Some(&path.points[0]), Some(line)).expect("a distance");
+    let rest = clearance(&network, None, &[line.into()]).expect("a distance");
+    let same = clearance(&network, Some(&path.points[0]), &[line.into()]).expect("a distance");
     close(same.distance_m, rest.distance_m, 1e-12, "rest by its shapes and by its state");
     for point in &path.points[1..] {
-        let alone = clearance(&network, Some(point), None).expect("a distance").distance_m;
-        let both = clearance(&network, Some(point), Some(line)).expect("a distance").distance_m;
+        let alone = clearance(&network, Some(point), &[]).expect("a distance").distance_m;
+        let both = clearance(&network, Some(point), &[line.into()]).expect("a distance").distance_m;
         assert!(both <= alone, "{both} {alone}");
         close(alone, by_walking(&network, point), 1e-10, "drawn half");
     }
@@ -274,22 +291,22 @@ fn ends_of_a_rigid_body() {
     right.arms_m[0] = [0.03, 0.04];
     let foreign = beam(3, 4, [-0.004, -0.03], [-0.004, 0.03]);
     let drive = Drive::Displacement { node: 1, direction: [0.0, 1.0] };
-    is(clearance(&Network::new(nodes.clone(), vec![left, right.clone(), foreign], drive), None, None), 0.006, "a foreign beam");
+    is(clearance(&Network::new(nodes.clone(), vec![left, right.clone(), foreign], drive), None, &[]), 0.006, "a foreign beam");
     let mut near = beam(0, 1, [-0.05, 0.0], [-0.01, 0.0]);
     near.arms_m[1] = [-0.01, 0.0];
     let mut other = beam(1, 2, [-0.006, 0.003], [0.08, 0.04]);
     other.arms_m[0] = [-0.006, 0.003];
     // Two ends on one body stay as they were made; the same ends on two nodes may meet.
     let body = Network::new(nodes.clone(), vec![near.clone(), other.clone()], drive);
-    assert!(clearance(&body, None, None).is_none());
+    assert!(clearance(&body, None, &[]).is_none());
     let mut apart = nodes;
     apart.push(node([0.0, 0.0], Support::Free));
     other.start = 5;
-    is(clearance(&Network::new(apart, vec![near, other], drive), None, None), 0.005, "two ends on two nodes");
+    is(clearance(&Network::new(apart, vec![near, other], drive), None, &[]), 0.005, "two ends on two nodes");
     // What is not a network has no clearance.
     let mut wrong = loose(&[([0.0, 0.0], &[0.0], 0.1), ([0.0, 0.02], &[0.0], 0.1)]);
     let line = Reflection { point_m: [0.0; 2], direction: [0.0; 2] };
-    assert!(clearance(&wrong, None, Some(line)).is_none());
+    assert!(clearance(&wrong, None, &[line.into()]).is_none());
     wrong.beams[0].start = 99;
-    assert!(clearance(&wrong, None, None).is_none());
+    assert!(clearance(&wrong, None, &[]).is_none());
 }

@@ -10,7 +10,8 @@ use forcewright_model as model;
 use crate::design::Design;
 use crate::force_curve::{Extrema, ForceCurve, Interval, Turn};
 use crate::metrics::METRICS;
-use crate::room::{Margin, Nearest, margin, nearest};
+use crate::room::{Margin, Nearest, gap_around_m, margin, nearest};
+use crate::stack::Stack;
 use crate::sway::Sway;
 
 /// Stations of the first attempt, and the most that are tried to keep the interpolation between them below its share of the error.
@@ -22,15 +23,17 @@ const TURN_PARTS: u32 = 8;
 /// The paper's operational range starts where the force reaches this fraction of its end value (section II).
 pub(crate) const RANGE_FRACTION: f64 = 0.95;
 
-/// What a design does. SI; forces and energies are those of the whole layout.
+/// What a design does. SI; displacements, forces and energies are those of the whole layout, but for those of the path.
 #[derive(Clone, Debug)]
 pub struct Behaviour {
-    /// The path of the drawn network.
+    /// The path of the drawn network: [`Self::delta_m`] and [`Self::force_n`] say what its states are for the whole layout.
     pub path: Path,
     /// Force over displacement of the whole layout, if at least two stations were reached.
     pub curve: Option<ForceCurve>,
-    /// Copies of the drawn network.
+    /// Copies of the drawn network that share the force.
     pub copies: f64,
+    /// Layers that share the displacement.
+    pub layers: f64,
     /// Whether the whole travel was reached.
     pub whole: bool,
     /// Where the states become unstable although the displacement is held, m: a real part leaves the computed path there.
@@ -41,6 +44,8 @@ pub struct Behaviour {
     pub interpolation_error: f64,
     /// What a slowly driven device does where the path ends at a limit point; `None` where it does not, or where that is not known.
     pub snap: Option<Snap>,
+    /// What layers in series do, where there are any.
+    pub stack: Option<Stack>,
     /// How the whole layout resists sideways, where symmetry separates that from the motion along the load.
     pub sway: Option<Sway>,
 }
@@ -82,7 +87,7 @@ impl Behaviour {
         for count in STATIONS {
             let stations: Vec<f64> = (0..=count).map(|i| design.load_end * i as f64 / count as f64).collect();
             let path = trace(&design.network, &stations, &settings, &mut progress)?;
-            let behaviour = Self::from_path(path, design.copies());
+            let behaviour = Self::from_path(path, design);
             let enough = behaviour.interpolation_error <= INTERPOLATION || !behaviour.whole;
             result = Some(behaviour);
             if enough {
@@ -90,33 +95,49 @@ impl Behaviour {
             }
         }
         let mut behaviour = result.ok_or(NetworkError::NoBeams)?;
-        if matches!(behaviour.path.status, Status::NoEquilibriumBeyond { .. }) && !behaviour.path.points.is_empty() {
+        // Of layers in series one would jump before the others.
+        let alone = design.layout.layers == 1;
+        if alone && matches!(behaviour.path.status, Status::NoEquilibriumBeyond { .. }) && !behaviour.path.points.is_empty() {
             behaviour.snap = snap(design, &settings, &mut progress)?;
         }
         behaviour.sway = Sway::of(design, &behaviour.path);
+        behaviour.stack = behaviour.curve.as_ref().filter(|_| design.layout.layers > 1).map(|c| Stack::of(c, design.layout.layers));
         Ok(behaviour)
     }
 
-    fn from_path(path: Path, copies: f64) -> Self {
+    fn from_path(path: Path, design: &Design) -> Self {
+        let (copies, layers) = (design.copies(), design.layers());
         let unstable = path.points.iter().find(|p| p.instability > 0);
-        let unstable_from_m =
-            unstable.map(|p| first_branch(&path, path.before.len()).map_or(p.displacement, |b| b.displacement.min(p.displacement)));
+        let unstable_from_m = unstable
+            .map(|p| layers * first_branch(&path, path.before.len()).map_or(p.displacement, |b| b.displacement.min(p.displacement)));
         let branching_load = (0..path.before.len()).find_map(|stage| {
             let reached = path.before[stage].control.abs();
             let branch = first_branch(&path, stage).map(|b| b.control.abs() / reached);
             branch.or((path.before[stage].instability > 0).then_some(1.0)).map(|part| (stage, part))
         });
         let whole = matches!(path.status, Status::Complete | Status::NotResolved { .. });
-        let curve = force_curve(&path.points, copies);
+        let curve = force_curve(&path.points, [copies, layers]);
         let largest = path.points.iter().map(|p| copies * p.force.abs()).fold(0.0, f64::max);
         let interpolation_error = curve.as_ref().map_or(0.0, |c| if largest > 0.0 { c.error_n() / largest } else { 0.0 });
-        Self { path, curve, copies, whole, unstable_from_m, branching_load, interpolation_error, snap: None, sway: None }
+        Self {
+            path,
+            curve,
+            copies,
+            layers,
+            whole,
+            unstable_from_m,
+            branching_load,
+            interpolation_error,
+            snap: None,
+            stack: None,
+            sway: None,
+        }
     }
 
     /// The part of it that a real part follows: all, or what lies before the path branches, which is then not the whole travel. Metrics
     /// and checks are those of this part.
     pub fn trusted(&self, design: &Design) -> Cow<'_, Self> {
-        let before = |p: &&Point| p.instability == 0 && self.unstable_from_m.is_none_or(|from| p.displacement <= from);
+        let before = |p: &&Point| p.instability == 0 && self.unstable_from_m.is_none_or(|from| self.delta_m(p) <= from);
         let count = if self.branching_load.is_some() { 0 } else { self.path.points.iter().take_while(before).count() };
         if count == self.path.points.len() {
             return Cow::Borrowed(self);
@@ -124,7 +145,27 @@ impl Behaviour {
         let mut path = self.path.clone();
         path.points.truncate(count);
         let sway = Sway::of(design, &path);
-        Cow::Owned(Self { whole: false, curve: force_curve(&path.points, self.copies), path, sway, ..self.clone() })
+        Cow::Owned(Self { whole: false, curve: force_curve(&path.points, [self.copies, self.layers]), path, sway, ..self.clone() })
+    }
+
+    /// Displacement of the whole layout in a state of the drawn network, m.
+    pub fn delta_m(&self, point: &Point) -> f64 {
+        self.layers * point.displacement
+    }
+
+    /// Force of the whole layout, N.
+    pub fn force_n(&self, point: &Point) -> f64 {
+        self.copies * point.force
+    }
+
+    /// Stiffness of the whole layout, N/m.
+    pub fn stiffness_n_per_m(&self, point: &Point) -> f64 {
+        self.copies / self.layers * point.stiffness
+    }
+
+    /// Elastic energy of the whole layout, J.
+    pub fn energy_j(&self, point: &Point) -> f64 {
+        self.copies * self.layers * point.energy_j
     }
 
     /// The largest stress up to the end of the path.
@@ -138,7 +179,7 @@ impl Behaviour {
         let load = |s: &LargestStress| s.peak.stress_pa / strength_pa(s.beam);
         let of = |point: &Point| {
             let all = point.beams.iter().enumerate().filter(|(beam, _)| strength_pa(*beam).is_finite());
-            let all = all.map(|(beam, state)| LargestStress { at_m: point.displacement, beam, peak: state.peak_stress() });
+            let all = all.map(|(beam, state)| LargestStress { at_m: self.delta_m(point), beam, peak: state.peak_stress() });
             // The first of equals, for the same answer everywhere.
             all.reduce(|best, next| if load(&next) > load(&best) { next } else { best })
         };
@@ -170,7 +211,7 @@ impl Behaviour {
 
     /// The displacement at a value of the control, m.
     fn displacement_at(&self, control: f64) -> Option<f64> {
-        self.path.at(control).ok().map(|p| p.displacement)
+        self.path.at(control).ok().map(|p| self.delta_m(&p))
     }
 
     /// Least tangent stiffness of the whole layout over the path, N/m, and where, m.
@@ -186,13 +227,13 @@ impl Behaviour {
     /// Least value of the stiffness times `sign`, N/m, refined between stations, and where, m.
     fn extreme_stiffness(&self, sign: f64) -> Option<(f64, f64)> {
         let points = &self.path.points;
-        let values: Vec<f64> = points.iter().map(|p| sign * self.copies * p.stiffness).collect();
+        let values: Vec<f64> = points.iter().map(|p| sign * self.stiffness_n_per_m(p)).collect();
         let best = (0..values.len()).reduce(|b, i| if values[i] < values[b] { i } else { b })?;
-        let station = (values[best], points[best].displacement);
+        let station = (values[best], self.delta_m(&points[best]));
         if !may_be_inside(&values, best) {
             return Some(station);
         }
-        let value = |x: f64| self.path.at(x).map_or(f64::NAN, |p| sign * self.copies * p.stiffness);
+        let value = |x: f64| self.path.at(x).map_or(f64::NAN, |p| sign * self.stiffness_n_per_m(&p));
         let (left, right) = (best.saturating_sub(1), (best + 1).min(points.len() - 1));
         let right = points[right].control;
         let found = forcewright_base::roots::minimise(value, points[left].control, right, 1e-6 * right);
@@ -213,7 +254,7 @@ impl Behaviour {
     /// Displacement and force of the extremum near one that was read off the curve, if the tangent changes its sign there.
     fn placed(&self, read: &Turn) -> Option<(f64, f64)> {
         let points = &self.path.points;
-        let after = points.partition_point(|p| p.displacement <= read.at).clamp(1, points.len() - 1);
+        let after = points.partition_point(|p| self.delta_m(p) <= read.at).clamp(1, points.len() - 1);
         let (left, right) = (points[after - 1].control, points[after].control);
         let sign = if read.is_max { 1.0 } else { -1.0 };
         let stiffness = |x: f64| self.path.at(x).map_or(f64::NAN, |p| sign * p.stiffness);
@@ -228,7 +269,7 @@ impl Behaviour {
             (place(part), place(part + 1))
         };
         let exact = forcewright_base::roots::root(stiffness, from, to, 1e-14 * right).ok()?;
-        self.path.at(exact).ok().map(|p| (p.displacement, self.copies * p.force))
+        self.path.at(exact).ok().map(|p| (self.delta_m(&p), self.force_n(&p)))
     }
 
     /// Where a force-driven device would jump: from the first local maximum, to the displacement beyond it that carries the same force
@@ -245,11 +286,11 @@ impl Behaviour {
 
 /// The force of the whole layout over the displacement; `None` for fewer than two states, or where the displacement turns back, as it
 /// may under a growing force.
-fn force_curve(points: &[Point], copies: f64) -> Option<ForceCurve> {
+fn force_curve(points: &[Point], [copies, layers]: [f64; 2]) -> Option<ForceCurve> {
     let pick = |f: fn(&Point) -> f64, scale: f64| points.iter().map(|p| scale * f(p)).collect::<Vec<_>>();
     let ascends = points.windows(2).all(|p| p[0].displacement < p[1].displacement);
     (points.len() >= 2 && ascends)
-        .then(|| ForceCurve::new(pick(|p| p.displacement, 1.0), pick(|p| p.force, copies), pick(|p| p.stiffness, copies)))
+        .then(|| ForceCurve::new(pick(|p| p.displacement, layers), pick(|p| p.force, copies), pick(|p| p.stiffness, copies / layers)))
 }
 
 /// Stations at which the path is followed beyond its limit point.
@@ -333,7 +374,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m.set("length_ratio_max", length_ratio(design));
     m.set("mass", mass_kg(design));
     let Some(curve) = &behaviour.curve else { return m };
-    m.set("stiffness_initial", behaviour.path.points.first().map(|p| behaviour.copies * p.stiffness));
+    m.set("stiffness_initial", behaviour.path.points.first().map(|p| behaviour.stiffness_n_per_m(p)));
     let Extrema { max, min } = behaviour.extrema();
     m.set("force_local_max", max.map(|(_, f)| f));
     m.set("force_local_max_at", max.map(|(x, _)| x));
@@ -356,7 +397,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     }
     let (end, travel) = (curve.end(), curve.end() - curve.start());
     m.set("force_at_end", curve.force(end));
-    m.set("energy_at_end", behaviour.path.points.last().map(|p| behaviour.copies * p.energy_j));
+    m.set("energy_at_end", behaviour.path.points.last().map(|p| behaviour.energy_j(p)));
     let start = curve.range_start(RANGE_FRACTION);
     m.set("range_start", start);
     m.set("range_ratio", start.map(|c| (end - c) / travel));
@@ -382,7 +423,8 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
         m.usable = within;
     }
     m.set("stiffness_min", m.stiffness.map(|(k, _)| k));
-    m.set("clearance_min", m.nearest.map(|n| n.clearance.distance_m));
+    let between = m.nearest.map(|n| n.clearance.distance_m);
+    m.set("clearance_min", [between, gap_around_m(design, behaviour)].into_iter().flatten().reduce(f64::min));
     m.set("envelope_margin", m.margin.map(|e| e.margin_m));
     m.set("lateral_stiffness_min", behaviour.sway.and_then(|s| s.least_n_per_m));
     m.set("stress_max", m.stress.map(|s| s.peak.stress_pa));
@@ -413,7 +455,7 @@ pub(crate) fn volume_m3(beam: &forcewright_beam::Beam) -> f64 {
 pub(crate) fn mass_kg(design: &Design) -> Option<f64> {
     let beams = design.network.beams.iter().enumerate();
     let masses = beams.map(|(i, b)| Some(design.material_of(i)?.density_kg_per_m3? * volume_m3(b)));
-    Some(design.copies() * masses.sum::<Option<f64>>()?)
+    Some(design.copies() * design.layers() * masses.sum::<Option<f64>>()?)
 }
 
 /// The unit in which people are shown a metric.

@@ -19,6 +19,7 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.extend(context.stress());
     all.extend(context.stiffness());
     all.extend(context.envelope());
+    all.extend(context.layers());
     all.extend(context.limits());
     all
 }
@@ -134,7 +135,7 @@ impl Context<'_> {
             let from = format_si(from, &self.design.units.displacement, 4);
             return format!("the path branches at Δ = {from}: beyond, a real part leaves the computed shape; see the status");
         }
-        let reach = self.behaviour.path.points.last().map_or(0.0, |p| p.displacement);
+        let reach = self.behaviour.path.points.last().map_or(0.0, |p| self.behaviour.delta_m(p));
         format!("the path ends at Δ = {}, before the full travel; see the status", format_si(reach, &self.design.units.displacement, 4))
     }
 
@@ -396,6 +397,39 @@ impl Context<'_> {
                 "move or reshape that beam, shorten the travel, or widen the envelope there"
             }
             .to_owned(),
+            missing: self.unreached(),
+            partial: !self.behaviour.whole,
+            broken: false,
+        };
+        Some(comparison.judge())
+    }
+
+    /// COMP008: layers in series move alike.
+    fn layers(&self) -> Option<Check> {
+        let stack = self.behaviour.stack.as_ref()?;
+        let units = &self.design.units;
+        let end_m = self.behaviour.curve.as_ref()?.end();
+        let jumps = match stack.jumps {
+            0 => "one layer runs ahead of the others".to_owned(),
+            1 => "a layer jumps ahead of the others once".to_owned(),
+            n => format!("layers jump ahead of the others, {n} times in all"),
+        };
+        let comparison = Comparison {
+            code: "COMP008",
+            name: "layers".to_owned(),
+            title: format!("Layers move alike up to Δ{}", self.so_far()),
+            value: Some(stack.apart_from_m.unwrap_or(end_m)),
+            limit: Some(if self.behaviour.whole { end_m } else { self.design.layers() * self.design.load_end }),
+            sense: Sense::AtLeast,
+            dimension: Dimension::Length,
+            display: units.displacement.clone(),
+            scale: None,
+            basis:
+                "layers in series at equal force, followed from minimum to minimum of their energy; they part where the force of one falls"
+                    .to_owned(),
+            fix: format!(
+                "where the force falls, {jumps}; change the shape so that it rises, shorten the travel, or let a linkage share it out"
+            ),
             missing: self.unreached(),
             partial: !self.behaviour.whole,
             broken: false,

@@ -7,7 +7,8 @@
 use forcewright_base::maths;
 use forcewright_beam::{Beam, BeamState, Path, Point, Theory};
 
-use crate::design::{Design, Mirror};
+use crate::design::Design;
+use crate::layout::Mirror;
 
 /// Chords along the axis of each beam.
 const CHORDS: usize = 32;
@@ -46,6 +47,12 @@ pub struct Crossing {
 /// Around a node that two beams share, the parts of both are not compared over 1.5 thicknesses or over 1/32 of the longer beam, whichever
 /// is more.
 pub fn first_crossing(design: &Design, path: &Path) -> Option<Crossing> {
+    let found = of_the_drawn(design, path)?;
+    Some(Crossing { displacement_m: design.layers() * found.displacement_m, ..found })
+}
+
+/// The same with the displacement of the drawn network.
+fn of_the_drawn(design: &Design, path: &Path) -> Option<Crossing> {
     let mut axes = Axes::at_rest(design);
     if let Some((first, second)) = axes.crossing() {
         return Some(Crossing { displacement_m: 0.0, first, second });
@@ -131,7 +138,7 @@ impl<'a> Axes<'a> {
         }
         let Frame { low, high } = Frame::of(&points);
         let touch_m = TOUCH * (high[0] - low[0]).max(high[1] - low[1]);
-        let side = design.mirror.map_or(0.0, |mirror| {
+        let side = design.layout.mirror.map_or(0.0, |mirror| {
             let sides = points.iter().map(|p| offset(mirror, *p)).filter(|d| d.abs() > touch_m).map(f64::signum);
             if sides.sum::<f64>() < 0.0 { -1.0 } else { 1.0 }
         });
@@ -170,7 +177,7 @@ impl<'a> Axes<'a> {
     }
 
     fn is_beyond_mirror(&self, beam: usize) -> bool {
-        self.design.mirror.is_some_and(|mirror| self.axis(beam).iter().any(|p| self.side * offset(mirror, *p) < -self.touch_m))
+        self.design.layout.mirror.is_some_and(|mirror| self.axis(beam).iter().any(|p| self.side * offset(mirror, *p) < -self.touch_m))
     }
 
     /// Whether two beams meet, or one meets itself, elsewhere than at a node they share.

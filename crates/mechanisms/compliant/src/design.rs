@@ -6,6 +6,7 @@ use forcewright_beam::{Beam, Joint, Joints, Network, Node, Point, Section, Setti
 use forcewright_contract::describe::{Along, Located, Member, Origin, Slot};
 
 use crate::bodies::{self, Body, DrawnNode, Grouping, find_node};
+use crate::layout::{self, Layout, Mirror, parse_mirror};
 use crate::loads::{self, Control, Loads};
 use crate::material::{Material, check_complete, fill_materials, typed_material};
 use crate::metrics::METRICS;
@@ -27,8 +28,8 @@ pub struct Design {
     pub bodies: Vec<Body>,
     /// Names of the beams, in the order of the network.
     pub beam_names: Vec<String>,
-    /// The mirror line, if there is a mirrored half.
-    pub mirror: Option<Mirror>,
+    /// Copies of the drawn network.
+    pub layout: Layout,
     /// The node of the last load.
     pub load_node: usize,
     /// The drawn nodes of all loads, in order.
@@ -37,7 +38,7 @@ pub struct Design {
     pub direction: [f64; 2],
     /// What grows along the path: the displacement or the force.
     pub control: Control,
-    /// Its largest value: the displacement d, m, or the force on the drawn network, N.
+    /// Its largest value on the drawn network: the displacement, m, or the force, N.
     pub load_end: f64,
     /// Where that value stands in the project.
     pub load_key: String,
@@ -60,7 +61,12 @@ pub struct Design {
 impl Design {
     /// How many copies of the drawn network share the force.
     pub fn copies(&self) -> f64 {
-        if self.mirror.is_some() { 2.0 } else { 1.0 }
+        self.layout.copies()
+    }
+
+    /// How many layers share the displacement.
+    pub fn layers(&self) -> f64 {
+        self.layout.layers()
     }
 
     /// Where a beam starts at rest, m.
@@ -90,35 +96,6 @@ impl Design {
     /// How its path is computed.
     pub fn settings(&self) -> Settings {
         Settings { theory: self.theory, accuracy: self.accuracy, joints: self.joints, ..Settings::default() }
-    }
-}
-
-/// A mirror line parallel to an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Mirror {
-    /// x = the value, m.
-    X(f64),
-    /// y = the value, m.
-    Y(f64),
-}
-
-impl Mirror {
-    /// The mirror image of a point, m.
-    pub fn image(self, [x, y]: [f64; 2]) -> [f64; 2] {
-        match self {
-            Self::X(at) => [2.0 * at - x, y],
-            Self::Y(at) => [x, 2.0 * at - y],
-        }
-    }
-
-    /// Whether a point lies on the line, to within rounding at the size of a network.
-    pub fn holds(self, network: &Network, [x, y]: [f64; 2]) -> bool {
-        let size = network.beams.iter().map(|b| b.shape.length_m()).fold(0.0, f64::max);
-        let off = match self {
-            Self::X(at) => x - at,
-            Self::Y(at) => y - at,
-        };
-        off.abs() <= 1e-9 * size
     }
 }
 
@@ -238,6 +215,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     if let Some(mirror) = mirror {
         check_mirror(&network, &drawn, mirror, spec, diagnostics);
     }
+    let layout = layout::resolve(spec, mirror, &network, &loads, diagnostics);
     if diagnostics.has_errors() {
         return None;
     }
@@ -251,7 +229,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         drawn,
         bodies,
         beam_names: spec.design.beams.iter().map(|b| b.name.value.clone()).collect(),
-        mirror,
+        layout,
         direction: loads.direction,
         control: loads.control,
         load_end: loads.end,
@@ -736,16 +714,7 @@ impl Builder<'_> {
     /// `x = 0` or `y = 2 mm`; the load must move along the line.
     fn mirror(&mut self, built: &Built) -> Option<Mirror> {
         let text = self.spec.layout.mirror.as_ref()?;
-        let parsed = text.value.split_once('=').and_then(|(axis, value)| {
-            let value = value.trim();
-            let at = if value == "0" { 0.0 } else { Quantity::parse(value, Dimension::Length).ok()?.si };
-            match axis.trim() {
-                "x" => Some(Mirror::X(at)),
-                "y" => Some(Mirror::Y(at)),
-                _ => None,
-            }
-        });
-        let Some(mirror) = parsed else {
+        let Some(mirror) = parse_mirror(&text.value) else {
             self.error(
                 Diagnostic::error("E0507", text.span, "this is not a mirror line")
                     .label("expected a line")

@@ -40,6 +40,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "Smallest distance of the surfaces of the drawn beams to the sides of `requirements.envelope`, at rest and over the travel; negative where a beam sticks out. The mirrored half stays in the mirrored envelope. Blocks and clamps are not looked at.\n\nA beam is all that is within half its thickness of its axis, as for `clearance_min`: its ends are round, and a beam that ends on a side sticks out by half its thickness there. Draw the side half a thickness behind the clamps. The design box of Lan, Wang & Chen 2010 (Table 1, constraint (ii)) holds the axes, with n1, n2 and n5 on its sides; to ask for the same, widen it by half the thickness.",
     ),
     code(
+        "COMP008",
+        "layers in series move alike",
+        "Layers in series carry the same force and share the displacement. That all move alike is an equilibrium, but a stable one only while the force of a layer rises with its displacement: where it falls, one layer runs ahead and the others spring back, smoothly or with a jump. Found by following the layers slowly from minimum to minimum of their energy Σ W(δᵢ) at Σ δᵢ = Δ, with an imperfection of a millionth of the travel; the value is the displacement at which they differ by more than 1 % of the travel of one.\n\nBeyond, the force stays between the smallest and the largest that the curve of one layer has there, but positions jump and the way back differs from the way forth: the report shows both. The metrics are those of layers that move alike. Shapes whose force never falls (`stiffness = { min = \"0 N/mm\" }`) do not part.",
+    ),
+    code(
         "E0501",
         "position of a node unknown",
         "A node has `at`, or it is joined by a beam with `angle` and `length` to a node whose position is known.",
@@ -142,6 +147,21 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0508",
         "beams cross",
         "The axes of two beams, of a beam with itself, or of a beam with the mirror line (and so with the other half) intersect. In a plane part that is contact, which is not modelled: the curve holds only up to the named displacement. Only axes are tested; beams of finite thickness touch a little earlier.",
+    ),
+    code(
+        "E0516",
+        "copies that cannot move alike",
+        "Rows, planes around an axis, plates and layers are joined by a block. They move alike only if that block moves along the load without turning; so the load node must be held as it is there: a slider along the load with fixed rotation.",
+    ),
+    code(
+        "E0517",
+        "parts of a layout that exclude each other",
+        "`circular` turns the drawn network round an axis along the load; its copies include the opposite one, so a mirrored half or rows beside it would stand in the way of each other. Layers in series carry each other's block, which a moment or a rotation would turn by an amount that depends on the others.",
+    ),
+    code(
+        "W0512",
+        "layers in series part",
+        "Where the force of a layer falls with its displacement, layers in series do not move alike: one runs ahead. See `explain COMP008`.",
     ),
     code(
         "W0510",

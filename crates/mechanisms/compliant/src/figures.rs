@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
+use forcewright_beam::Point;
 use forcewright_model::{
     Axis, Branch, Curve, Figure, FigureContent, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan,
 };
@@ -10,6 +11,7 @@ use forcewright_model::{
 use crate::analysis::{Behaviour, Measured, RANGE_FRACTION};
 use crate::design::Design;
 use crate::scene::scene;
+use crate::stack::Stack;
 
 fn displacement_axis(design: &Design) -> Axis {
     Axis {
@@ -52,24 +54,34 @@ fn beam_force_n(behaviour: &Behaviour, direction: [f64; 2], point: usize, beam: 
     behaviour.copies * (h * direction[0] + v * direction[1])
 }
 
+/// What the force is that of.
+fn force_label(design: &Design) -> String {
+    match (design.layout.repeats(), design.layout.mirror.is_some()) {
+        (true, _) => "F, whole layout",
+        (false, true) => "F, both halves",
+        (false, false) => "F",
+    }
+    .to_owned()
+}
+
 /// Every curve of a result.
 pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
     let points = &behaviour.path.points;
-    let x: Vec<f64> = points.iter().map(|p| p.displacement).collect();
+    let x: Vec<f64> = points.iter().map(|p| behaviour.delta_m(p)).collect();
     let one = |name: &'static str, label: &str, dimension: Dimension, display: Unit, y: Vec<f64>| Curve {
         name,
         x: displacement_axis(design),
         y: Axis { name, label: label.to_owned(), dimension, display },
         branches: vec![Branch { name: "loading".to_owned(), x: x.clone(), y }],
     };
-    let scaled = |f: fn(&forcewright_beam::Point) -> f64| points.iter().map(|p| behaviour.copies * f(p)).collect::<Vec<_>>();
+    let all = |f: fn(&Behaviour, &Point) -> f64| points.iter().map(|p| f(behaviour, p)).collect::<Vec<_>>();
     let millijoule = Unit::parse("mJ").unwrap_or_else(|_| Unit::si(Dimension::Energy));
     let stress: Vec<f64> = points.iter().map(|p| p.peak_stress().map_or(f64::NAN, |(_, s)| s.stress_pa)).collect();
     vec![
-        Curve { y: force_axis(design), ..one("force", "Force F", Dimension::Force, design.units.force.clone(), scaled(|p| p.force)) },
-        one("stiffness", "Stiffness dF/dΔ", Dimension::Stiffness, design.units.stiffness.clone(), scaled(|p| p.stiffness)),
+        Curve { y: force_axis(design), ..one("force", "Force F", Dimension::Force, design.units.force.clone(), all(Behaviour::force_n)) },
+        one("stiffness", "Stiffness dF/dΔ", Dimension::Stiffness, design.units.stiffness.clone(), all(Behaviour::stiffness_n_per_m)),
         Curve { y: stress_axis(design), ..one("stress", "", Dimension::Stress, design.units.stress.clone(), stress) },
-        one("energy", "Elastic energy U", Dimension::Energy, millijoule, scaled(|p| p.energy_j)),
+        one("energy", "Elastic energy U", Dimension::Energy, millijoule, all(Behaviour::energy_j)),
     ]
 }
 
@@ -83,6 +95,7 @@ pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measure
     }];
     if behaviour.curve.is_some() {
         all.push(force_figure(design, behaviour, measured));
+        all.extend(behaviour.stack.as_ref().filter(|s| s.apart_from_m.is_some()).map(|s| layers_figure(design, behaviour, s)));
         all.push(stress_figure(design, behaviour, measured));
         if design.network.beams.len() > 1 {
             all.push(beam_forces_figure(design, behaviour));
@@ -125,7 +138,7 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
     let mut markers = Vec::new();
     if let (Some(c), Some(end)) = (measured.get("range_start"), measured.get("force_at_end")) {
         let fraction = format_number(100.0 * RANGE_FRACTION, 3);
-        let d = points.last().map_or(f64::NAN, |p| p.displacement);
+        let d = points.last().map_or(f64::NAN, |p| behaviour.delta_m(p));
         markers.push(Marker {
             x: c,
             y: RANGE_FRACTION * end,
@@ -151,9 +164,9 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
         caption.push_str("c and d are the limits of the operational range as Lan, Wang & Chen define it.");
     }
     let series = Series {
-        label: if design.mirror.is_some() { "F, both halves".to_owned() } else { "F".to_owned() },
-        x: points.iter().map(|p| p.displacement).collect(),
-        y: points.iter().map(|p| behaviour.copies * p.force).collect(),
+        label: force_label(design),
+        x: points.iter().map(|p| behaviour.delta_m(p)).collect(),
+        y: points.iter().map(|p| behaviour.force_n(p)).collect(),
         stroke: Stroke::Main,
     };
     let plot = Plot {
@@ -171,7 +184,7 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
 
 fn stress_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Figure {
     let points = &behaviour.path.points;
-    let x: Vec<f64> = points.iter().map(|p| p.displacement).collect();
+    let x: Vec<f64> = points.iter().map(|p| behaviour.delta_m(p)).collect();
     let mut levels = Vec::new();
     if let Some(allowed) = design.common_allowable_pa() {
         levels.push(HorizontalLine {
@@ -225,9 +238,36 @@ fn stress_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) ->
     Figure { id: "stress", title: "Stress over displacement".to_owned(), caption, content: FigureContent::Plot(plot) }
 }
 
+/// Where layers in series part, and the force that they then have.
+fn layers_figure(design: &Design, behaviour: &Behaviour, stack: &Stack) -> Figure {
+    let series = |label: &str, x: &[f64], y: &[f64], stroke| Series { label: label.to_owned(), x: x.to_vec(), y: y.to_vec(), stroke };
+    let points = &behaviour.path.points;
+    let alike: [Vec<f64>; 2] =
+        [points.iter().map(|p| behaviour.delta_m(p)).collect(), points.iter().map(|p| behaviour.force_n(p)).collect()];
+    let plot = Plot {
+        x: displacement_axis(design),
+        y: force_axis(design),
+        series: vec![
+            series("all alike", &alike[0], &alike[1], Stroke::Reference),
+            series("forth", &stack.loading[0], &stack.loading[1], Stroke::Main),
+            series("back", &stack.unloading[0], &stack.unloading[1], Stroke::Second),
+        ],
+        bands: Vec::new(),
+        levels: Vec::new(),
+        spans: Vec::new(),
+        markers: Vec::new(),
+        from_zero: true,
+    };
+    let from = stack.apart_from_m.map_or_else(String::new, |x| format_si(x, &design.units.displacement, 4));
+    let caption = format!(
+        "From Δ = {from} on the layers do not move alike: where its force falls, one runs ahead and the others spring back. Slowly moved forth and back; a layer at the end of its travel stays there, as at a stop."
+    );
+    Figure { id: "layers", title: "Layers in series".to_owned(), caption, content: FigureContent::Plot(plot) }
+}
+
 fn beam_forces_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     let strokes = [Stroke::Main, Stroke::Second, Stroke::Third, Stroke::Reference];
-    let x: Vec<f64> = behaviour.path.points.iter().map(|p| p.displacement).collect();
+    let x: Vec<f64> = behaviour.path.points.iter().map(|p| behaviour.delta_m(p)).collect();
     let senses = senses(design);
     // More lines than line styles would be unreadable: the beams with the largest forces are shown.
     let mut beams: Vec<(usize, Vec<f64>)> = (0..design.network.beams.len())

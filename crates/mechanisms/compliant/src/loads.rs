@@ -5,7 +5,8 @@ use forcewright_base::units::Quantity;
 use forcewright_beam::{Drive, Stage};
 use forcewright_contract::describe::{Located, Member, member_path};
 
-use crate::design::{Mirror, unit};
+use crate::design::unit;
+use crate::layout::{self, Mirror};
 use crate::spec::{self, Spec};
 
 /// What grows along the path.
@@ -85,9 +86,9 @@ pub(crate) fn resolve(spec: &Spec, nodes: &[Option<usize>], place: Span, diagnos
         }
         return None;
     };
-    // Forces and moments are those of the whole layout.
-    let copies = if spec.layout.mirror.is_some() { 2.0 } else { 1.0 };
-    let read: Vec<Option<(Drive, f64)>> = (spec.load.iter().zip(nodes)).map(|(load, node)| one(load, *node, copies, diagnostics)).collect();
+    // Forces, moments and travels are those of the whole layout.
+    let shares = layout::shares(spec);
+    let read: Vec<Option<(Drive, f64)>> = (spec.load.iter().zip(nodes)).map(|(load, node)| one(load, *node, shares, diagnostics)).collect();
     let (kind, _) = values(&last.value).into_iter().next()?;
     if kind.turns() {
         let span = values(&last.value).first().map_or(last.name.span, |(_, value)| value.span);
@@ -116,7 +117,7 @@ pub(crate) fn resolve(spec: &Spec, nodes: &[Option<usize>], place: Span, diagnos
 }
 
 /// One load: what it prescribes on the drawn network, and how far.
-fn one(load: &Member<spec::Load>, node: Option<usize>, copies: f64, diagnostics: &mut Diagnostics) -> Option<(Drive, f64)> {
+fn one(load: &Member<spec::Load>, node: Option<usize>, [copies, layers]: [f64; 2], diagnostics: &mut Diagnostics) -> Option<(Drive, f64)> {
     let sound = !diagnostics.has_errors();
     let given = values(&load.value);
     let (kind, value) = match given[..] {
@@ -166,7 +167,7 @@ fn one(load: &Member<spec::Load>, node: Option<usize>, copies: f64, diagnostics:
     };
     let (node, si) = (node?, value.value.si);
     Some(match kind {
-        Kind::Travel => (Drive::Displacement { node, direction }, si),
+        Kind::Travel => (Drive::Displacement { node, direction }, si / layers),
         Kind::Force => (Drive::Force { node, direction }, si / copies),
         Kind::Moment => (Drive::Moment { node }, si / copies),
         Kind::Rotation => (Drive::Rotation { node }, si),

@@ -1,10 +1,10 @@
 //! Room: the smallest distance between beams, and of the beams to the sides of the envelope, over the travel.
 
 use forcewright_base::roots;
-use forcewright_beam::{BeamState, Clearance, Point, Reflection, clearance, clearance_near};
+use forcewright_beam::{BeamState, Clearance, Point, clearance, clearance_near};
 
 use crate::analysis::Behaviour;
-use crate::design::{Design, Envelope, Mirror};
+use crate::design::{Design, Envelope};
 
 /// States looked at, besides rest, before the least is refined between its neighbours.
 const STATES: usize = 12;
@@ -37,25 +37,39 @@ pub struct Margin {
     pub margin_m: f64,
 }
 
-/// The smallest distance between the surfaces of beams from rest to the end of the path, mirrored halves included; `None` where no two
+/// The smallest distance between the surfaces of beams from rest to the end of the path, copies in the plane included; `None` where no two
 /// of them face each other.
 ///
 /// Looks at rest and at 12 states, and refines the displacement between the neighbours of the least.
 pub fn nearest(design: &Design, behaviour: &Behaviour) -> Option<Nearest> {
-    let reflection = design.mirror.map(|mirror| match mirror {
-        Mirror::X(at) => Reflection { point_m: [at, 0.0], direction: [0.0, 1.0] },
-        Mirror::Y(at) => Reflection { point_m: [0.0, at], direction: [1.0, 0.0] },
-    });
+    let images = design.layout.neighbours();
     let network = &design.network;
     let whole = |point: &Point| {
-        let clearance = clearance(network, Some(point), reflection)?;
-        Some(Nearest { at_m: point.displacement, clearance })
+        let clearance = clearance(network, Some(point), &images)?;
+        Some(Nearest { at_m: behaviour.delta_m(point), clearance })
     };
     let near = |point: &Point, known: &Nearest| {
-        let clearance = clearance_near(network, Some(point), reflection, &known.clearance)?;
-        Some(Nearest { at_m: point.displacement, clearance })
+        let clearance = clearance_near(network, Some(point), &images, &known.clearance)?;
+        Some(Nearest { at_m: behaviour.delta_m(point), clearance })
     };
     least(behaviour, whole, near, |n| n.clearance.distance_m)
+}
+
+/// The smallest distance between the plates of neighbours around an axis over the path, m; `None` without such a layout.
+pub(crate) fn gap_around_m(design: &Design, behaviour: &Behaviour) -> Option<f64> {
+    let circle = design.layout.circle?;
+    let inner = |state: &BeamState| {
+        let off = |u: f64| {
+            let [x, y] = state.shape_m(u);
+            let [ox, oy] = circle.axis_m;
+            (x - ox) * circle.outward[0] + (y - oy) * circle.outward[1] - 0.5 * state.thickness_m(u)
+        };
+        least_along(off).1
+    };
+    let of = |point: &Point| point.beams.iter().map(inner).reduce(f64::min);
+    let inner_m = least(behaviour, of, |point, _| of(point), |inner_m| *inner_m)?;
+    let depth_m = design.network.beams.iter().map(|b| b.section.depth_m).fold(0.0, f64::max);
+    design.layout.gap_around_m(inner_m, depth_m)
 }
 
 /// The smallest distance of the beams, with their thickness, to the sides of an envelope from rest to the end of the path.
@@ -66,7 +80,7 @@ pub fn margin(behaviour: &Behaviour, envelope: &Envelope) -> Option<Margin> {
     let of = |point: &Point| {
         let all = point.beams.iter().enumerate().map(|(beam, state)| {
             let (u, margin_m) = beam_margin(state, envelope);
-            Margin { at_m: point.displacement, beam, u, margin_m }
+            Margin { at_m: behaviour.delta_m(point), beam, u, margin_m }
         });
         all.reduce(|best, next| if next.margin_m < best.margin_m { next } else { best })
     };
@@ -83,10 +97,15 @@ fn beam_margin(state: &BeamState, envelope: &Envelope) -> (f64, f64) {
         // A face on a side touches it, whatever rounding says.
         if margin_m.abs() <= TOUCH * half_m { 0.0 } else { margin_m }
     };
+    least_along(at)
+}
+
+/// The least of a quantity along a beam: where, and how much.
+fn least_along(at: impl Fn(f64) -> f64) -> (f64, f64) {
     let place = |i: usize| i as f64 / PLACES as f64;
     let values: Vec<f64> = (0..=PLACES).map(|i| at(place(i))).collect();
     let best = (0..=PLACES).reduce(|b, i| if values[i] < values[b] { i } else { b }).unwrap_or(0);
-    let found = roots::minimise(at, place(best.saturating_sub(1)), place((best + 1).min(PLACES)), 1e-7);
+    let found = roots::minimise(&at, place(best.saturating_sub(1)), place((best + 1).min(PLACES)), 1e-7);
     if found.value < values[best] { (found.x, found.value) } else { (place(best), values[best]) }
 }
 

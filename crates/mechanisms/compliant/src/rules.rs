@@ -4,7 +4,7 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_beam::{Joints, Network, NetworkError, Rotation, Support};
 
 use crate::bodies::{DrawnNode, Grouping};
-use crate::design::Mirror;
+use crate::layout::Mirror;
 use crate::spec::Spec;
 
 /// What the engine finds wrong with the network, at the place of its cause.

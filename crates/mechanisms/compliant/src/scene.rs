@@ -2,7 +2,7 @@
 
 use forcewright_base::maths;
 use forcewright_base::units::format_si;
-use forcewright_beam::{Beam, BeamState, Drive, Point, Rotation, Support};
+use forcewright_beam::{Beam, BeamState, Drive, Image, Point, Rotation, Support};
 use forcewright_model::{ColourScale, Item, Role, Scene, SupportKind};
 
 use crate::analysis::{Behaviour, Measured};
@@ -14,7 +14,7 @@ const SAMPLES: usize = 49;
 /// Draws a design, and its last state if there is one.
 pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Scene {
     let last = behaviour.path.points.last();
-    let artist = Artist { design, size_m: size_m(design) };
+    let artist = Artist { design, size_m: size_m(design), pitch_m: pitch_m(design) };
     let mut items = Vec::new();
     artist.mirror_line(&mut items);
     artist.envelope(&mut items);
@@ -30,13 +30,13 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured)
     if let Some(point) = last {
         artist.load(&mut items, behaviour, point);
         artist.held_loads(&mut items, point);
-        artist.peak(&mut items, measured, point);
-        artist.nearest(&mut items, measured, point);
+        artist.peak(&mut items, measured, (point, behaviour.delta_m(point)));
+        artist.nearest(&mut items, measured, behaviour.delta_m(point));
     }
     let largest = last.and_then(Point::peak_stress).map_or(0.0, |(_, peak)| peak.stress_pa);
     let limit = design.common_allowable_pa().map(|pa| (pa, "allowed".to_owned()));
     let scale_end = limit.as_ref().map_or(largest, |(pa, _)| largest.max(*pa));
-    let reached = last.map_or_else(String::new, |p| format_si(p.displacement, &design.units.displacement, 4));
+    let reached = last.map_or_else(String::new, |p| format_si(behaviour.delta_m(p), &design.units.displacement, 4));
     Scene {
         items,
         scale: Some(ColourScale {
@@ -56,7 +56,7 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured)
                 1 => ", a rigid body".to_owned(),
                 n => format!(", {n} rigid bodies"),
             },
-            if design.mirror.is_some() { ", with its mirrored half" } else { "" }
+            design.layout.words()
         ),
     }
 }
@@ -142,22 +142,27 @@ fn axis_point(state: Option<&BeamState>, beam: &Beam, start: [f64; 2], u: f64) -
 
 /// The corners of a band of a half width around points: of the square ends of a bar around two, of a polygon around more.
 ///
-/// Each point is widened to a small square; the hull of all (A. M. Andrew, Information Processing Letters 9 (1979)) is the outline.
+/// Each point is widened to a small square; the hull of all is the outline.
 fn outline(points: Vec<[f64; 2]>, half_m: f64) -> Vec<[f64; 2]> {
-    let turns = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     // Squares along the line through the two points that are farthest apart, so that a bar is a rectangle.
     let pairs = points.iter().enumerate().flat_map(|(i, p)| points.iter().skip(i + 1).map(move |q| [q[0] - p[0], q[1] - p[1]]));
     let longest = pairs.reduce(|a, b| if maths::hypot(b[0], b[1]) > maths::hypot(a[0], a[1]) { b } else { a }).unwrap_or([1.0, 0.0]);
     let length = maths::hypot(longest[0], longest[1]);
     let [x, y] = if length > 0.0 { longest.map(|v| half_m * v / length) } else { [half_m, 0.0] };
     let around = |p: [f64; 2]| [[x - y, y + x], [-x - y, x - y], [y - x, -x - y], [x + y, y - x]].map(|c| [p[0] + c[0], p[1] + c[1]]);
-    let mut all: Vec<[f64; 2]> = points.into_iter().flat_map(around).collect();
+    hull(points.into_iter().flat_map(around).collect())
+}
+
+/// The corners of the convex hull of points, counterclockwise (A. M. Andrew, Information Processing Letters 9 (1979)).
+fn hull(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let turns = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let size = all.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
         let mut chain: Vec<[f64; 2]> = Vec::new();
         for p in points {
             while let [.., a, b] = chain[..]
-                && turns(a, b, p) <= 1e-12 * half_m * half_m
+                && turns(a, b, p) <= 1e-15 * size * size
             {
                 chain.pop();
             }
@@ -174,10 +179,47 @@ fn outline(points: Vec<[f64; 2]>, half_m: f64) -> Vec<[f64; 2]> {
 struct Artist<'a> {
     design: &'a Design,
     size_m: f64,
+    /// From a layer to the next one, m.
+    pitch_m: f64,
+}
+
+/// Room that a layer takes along the load, m, with some air.
+fn pitch_m(design: &Design) -> f64 {
+    let d = design.direction;
+    let along = |p: [f64; 2]| p[0] * d[0] + p[1] * d[1];
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for beam in &design.network.beams {
+        let start = design.start_m(beam);
+        for i in 0..SAMPLES {
+            let at = along(axis_point(None, beam, start, i as f64 / (SAMPLES - 1) as f64));
+            (low, high) = (low.min(at), high.max(at));
+        }
+    }
+    let rows = design.layout.rows.map_or(0.0, |r| f64::from(r.count - 1) * along(r.step_m).abs());
+    1.2 * (high - low) + rows
+}
+
+/// A vector seen in a copy.
+fn turned(image: &Image, v: [f64; 2]) -> [f64; 2] {
+    let (zero, tip) = (image.of([0.0, 0.0]), image.of(v));
+    [tip[0] - zero[0], tip[1] - zero[1]]
 }
 
 impl Artist<'_> {
+    /// The copies beside the drawn network. Each layer stands on the block of the one before, and moves with it.
+    fn copies(&self, state: Option<&Point>) -> Vec<Image> {
+        let layout = &self.design.layout;
+        let rise_m = self.pitch_m - state.map_or(0.0, |s| s.displacement);
+        let images = layout.images();
+        let layer = |index: u32| {
+            let by = self.design.direction.map(|d| -f64::from(index) * rise_m * d);
+            images.iter().map(move |i| Image { shift_m: [i.shift_m[0] + by[0], i.shift_m[1] + by[1]], ..*i })
+        };
+        (0..layout.layers).flat_map(layer).skip(1).collect()
+    }
+
     fn beams(&self, items: &mut Vec<Item>, state: Option<&Point>) {
+        let copies = self.copies(state);
         for (index, beam) in self.design.network.beams.iter().enumerate() {
             let start = self.design.start_m(beam);
             let state = state.map(|s| &s.beams[index]);
@@ -195,8 +237,8 @@ impl Artist<'_> {
                     (0..=piece.chords).map(stress).collect::<Vec<_>>()
                 });
                 let width_m = piece.width_m;
-                if let Some(mirror) = self.design.mirror {
-                    let points = line.iter().map(|p| mirror.image(*p)).collect();
+                for image in &copies {
+                    let points = line.iter().map(|p| image.of(*p)).collect();
                     items.push(Item::Line { points, width_m, role: copy, values: values.clone() });
                 }
                 items.push(Item::Line { points: line, width_m, role, values });
@@ -223,10 +265,12 @@ impl Artist<'_> {
 
     fn has_block(&self) -> bool {
         let guided = matches!(self.design.network.nodes[self.design.load_node].support, Support::Slider { rotation: Rotation::Fixed, .. });
-        guided && self.design.mirror.is_some()
+        guided && (self.design.layout.mirror.is_some() || self.design.layout.repeats())
     }
 
     fn supports(&self, items: &mut Vec<Item>) {
+        // Of the layers behind the first, the block of the one before is the ground.
+        let copies: Vec<Image> = self.design.layout.images().into_iter().skip(1).collect();
         for (index, node) in self.design.network.nodes.iter().enumerate() {
             if self.has_block() && index == self.design.load_node {
                 continue;
@@ -240,22 +284,18 @@ impl Artist<'_> {
             };
             let outward = self.outward(index);
             items.push(Item::Support { at: node.position_m, kind, outward });
-            if let Some(mirror) = self.design.mirror {
-                let image = |v: [f64; 2]| {
-                    let (zero, tip) = (mirror.image([0.0, 0.0]), mirror.image(v));
-                    [tip[0] - zero[0], tip[1] - zero[1]]
-                };
+            for image in &copies {
                 let kind = match kind {
-                    SupportKind::Slider { direction, rotates } => SupportKind::Slider { direction: image(direction), rotates },
+                    SupportKind::Slider { direction, rotates } => SupportKind::Slider { direction: turned(image, direction), rotates },
                     other => other,
                 };
-                items.push(Item::Support { at: mirror.image(node.position_m), kind, outward: image(outward) });
+                items.push(Item::Support { at: image.of(node.position_m), kind, outward: turned(image, outward) });
             }
         }
     }
 
     fn mirror_line(&self, items: &mut Vec<Item>) {
-        let Some(mirror) = self.design.mirror else { return };
+        let Some(mirror) = self.design.layout.mirror else { return };
         // Along the load, from well below to well above the mechanism.
         let centre = self.design.network.nodes[self.design.load_node].position_m;
         let image = mirror.image(centre);
@@ -266,24 +306,46 @@ impl Artist<'_> {
         items.push(Item::Line { points: vec![at(-back), at(ahead)], width_m: 0.0, role: Role::Construction, values: None });
     }
 
-    /// The rigid block that joins the two halves at the moved node.
+    /// The rigid blocks that join the copies at the moved node, one per layer.
     fn block(&self, items: &mut Vec<Item>, point: &Point) {
         if !self.has_block() {
             return;
         }
-        let Some(mirror) = self.design.mirror else { return };
         let node = self.design.load_node;
         let at = self.design.network.nodes[node].position_m;
         let d = self.design.direction;
         let height = 0.06 * self.size_m;
-        let rest = |shift: [f64; 2]| {
-            let a = [at[0] + shift[0], at[1] + shift[1]];
-            let b = mirror.image(a);
-            let back = |p: [f64; 2]| [p[0] - height * d[0], p[1] - height * d[1]];
-            vec![a, b, back(b), back(a)]
-        };
-        items.push(Item::Body { corners: rest([0.0, 0.0]), role: Role::Undeformed });
-        items.push(Item::Body { corners: rest(point.nodes[node].displacement_m), role: Role::Deformed });
+        let images = self.design.layout.images();
+        let moved = point.nodes[node].displacement_m;
+        for layer in 0..self.design.layout.layers {
+            let corners = |shift: [f64; 2], rise_m: f64| {
+                let up = f64::from(layer) * rise_m;
+                let place = |image: &Image| {
+                    let p = image.of([at[0] + shift[0], at[1] + shift[1]]);
+                    [p[0] - up * d[0], p[1] - up * d[1]]
+                };
+                let ends = images.iter().map(place);
+                ends.flat_map(|p| [p, [p[0] - height * d[0], p[1] - height * d[1]]]).collect()
+            };
+            items.push(Item::Body { corners: hull(corners([0.0, 0.0], self.pitch_m)), role: Role::Undeformed });
+            let rise_m = self.pitch_m - point.displacement;
+            let block: Vec<[f64; 2]> = corners(moved, rise_m);
+            if layer + 1 < self.design.layout.layers {
+                items.push(Item::Body { corners: hull([&block[..], &self.feet(layer + 1, rise_m)].concat()), role: Role::Rigid });
+            }
+            items.push(Item::Body { corners: hull(block), role: Role::Deformed });
+        }
+    }
+
+    /// Where a layer under load stands on the one before: its held nodes and a little below them.
+    fn feet(&self, layer: u32, rise_m: f64) -> Vec<[f64; 2]> {
+        let d = self.design.direction;
+        let up = f64::from(layer) * rise_m;
+        let held = self.design.network.nodes.iter().filter(|n| matches!(n.support, Support::Clamped | Support::Pinned));
+        let images = self.design.layout.images();
+        let all = held.flat_map(|n| images.iter().map(|i| i.of(n.position_m)));
+        let below = 0.02 * self.size_m;
+        all.flat_map(|[x, y]| [up, up - below].map(|by| [x - by * d[0], y - by * d[1]])).collect()
     }
 
     fn labels(&self, items: &mut Vec<Item>) {
@@ -295,23 +357,27 @@ impl Artist<'_> {
     fn load(&self, items: &mut Vec<Item>, behaviour: &Behaviour, point: &Point) {
         let node = self.design.load_node;
         let at = self.design.network.nodes[node].position_m;
-        let centre = match self.design.mirror {
+        let centre = match self.design.layout.mirror {
             Some(mirror) if self.has_block() => {
                 let image = mirror.image(at);
                 [f64::midpoint(at[0], image[0]), f64::midpoint(at[1], image[1])]
             }
             _ => at,
         };
-        let moved = point.nodes[node].displacement_m;
+        // On the last layer, and on its last row.
         let d = self.design.direction;
+        let rise_m = f64::from(self.design.layout.layers - 1) * (self.pitch_m - point.displacement);
+        let rows_m = self.design.layout.rows.map_or(0.0, |r| f64::from(r.count - 1) * -(r.step_m[0] * d[0] + r.step_m[1] * d[1])).max(0.0);
+        let centre = [centre[0] - (rise_m + rows_m) * d[0], centre[1] - (rise_m + rows_m) * d[1]];
+        let moved = point.nodes[node].displacement_m;
         let gap = if self.has_block() { 0.07 } else { 0.02 } * self.size_m;
         let head = [centre[0] + moved[0] - gap * d[0], centre[1] + moved[1] - gap * d[1]];
         let tail = [head[0] - 0.22 * self.size_m * d[0], head[1] - 0.22 * self.size_m * d[1]];
         let units = &self.design.units;
         let label = format!(
             "F = {} at Δ = {}",
-            format_si(behaviour.copies * point.force, &units.force, 4),
-            format_si(point.displacement, &units.displacement, 4)
+            format_si(behaviour.force_n(point), &units.force, 4),
+            format_si(behaviour.delta_m(point), &units.displacement, 4)
         );
         items.push(Item::Arrow { from: tail, to: head, label });
     }
@@ -325,8 +391,8 @@ impl Artist<'_> {
             let ends = beams.flat_map(|b| [(b.start, b.thickness_at(0.0)), (b.end, b.thickness_at(1.0))]);
             let thickest_m = ends.filter(|(node, _)| *node == body.node).map(|(_, w)| w).fold(0.01 * self.size_m, f64::max);
             let corners = outline(body.members.iter().filter_map(at).collect(), 0.5 * thickest_m);
-            if let Some(mirror) = self.design.mirror {
-                items.push(Item::Body { corners: corners.iter().map(|p| mirror.image(*p)).collect(), role: copy });
+            for image in self.copies(state) {
+                items.push(Item::Body { corners: corners.iter().map(|p| image.of(*p)).collect(), role: copy });
             }
             items.push(Item::Body { corners, role });
         }
@@ -347,8 +413,8 @@ impl Artist<'_> {
             let aside = if drawn.node == design.load_node { 0.05 * self.size_m } else { 0.0 };
             let end = |back: f64| [at[0] - back * d[0] - aside * d[1], at[1] - back * d[1] + aside * d[0]];
             let (head, tail) = (end(0.02 * self.size_m), end(0.16 * self.size_m));
-            if let Some(mirror) = design.mirror {
-                items.push(Item::Arrow { from: mirror.image(tail), to: mirror.image(head), label: String::new() });
+            for image in self.copies(Some(point)) {
+                items.push(Item::Arrow { from: image.of(tail), to: image.of(head), label: String::new() });
             }
             items.push(Item::Arrow { from: tail, to: head, label: text });
         }
@@ -365,9 +431,9 @@ impl Artist<'_> {
     }
 
     /// The place where beams come nearest to each other, if the picture shows the state.
-    fn nearest(&self, items: &mut Vec<Item>, measured: &Measured, point: &Point) {
+    fn nearest(&self, items: &mut Vec<Item>, measured: &Measured, delta_m: f64) {
         let Some(nearest) = measured.nearest else { return };
-        let shown = nearest.at_m <= 0.0 || nearest.at_m >= point.displacement * (1.0 - 1e-9);
+        let shown = nearest.at_m <= 0.0 || nearest.at_m >= delta_m * (1.0 - 1e-9);
         if shown {
             let (p, q) = (nearest.clearance.first.point_m, nearest.clearance.second.point_m);
             let at = [f64::midpoint(p[0], q[0]), f64::midpoint(p[1], q[1])];
@@ -376,9 +442,9 @@ impl Artist<'_> {
         }
     }
 
-    fn peak(&self, items: &mut Vec<Item>, measured: &Measured, point: &Point) {
+    fn peak(&self, items: &mut Vec<Item>, measured: &Measured, (point, delta_m): (&Point, f64)) {
         // Marked only where the picture shows the state in which it occurs.
-        let Some(largest) = measured.stress.filter(|s| s.at_m >= point.displacement * (1.0 - 1e-9)) else { return };
+        let Some(largest) = measured.stress.filter(|s| s.at_m >= delta_m * (1.0 - 1e-9)) else { return };
         let at = point.beams[largest.beam].shape_m(largest.peak.u);
         items.push(Item::Marker { at, label: format!("σ max {}", format_si(largest.peak.stress_pa, &self.design.units.stress, 3)) });
     }

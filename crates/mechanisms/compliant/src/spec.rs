@@ -173,6 +173,25 @@ pub(crate) struct Beam {
 #[derive(Debug, Default)]
 pub(crate) struct Layout {
     pub mirror: Slot<String>,
+    pub array: Section<Array>,
+    pub circular: Section<Circular>,
+    pub plates: Slot<u32>,
+    pub series: Slot<u32>,
+}
+
+/// Rows of copies in the plane.
+#[derive(Debug, Default)]
+pub(crate) struct Array {
+    pub count: Slot<u32>,
+    pub spacing: Slot<Quantity>,
+    pub direction: Slot<[f64; 2]>,
+}
+
+/// Copies around an axis along the load.
+#[derive(Debug, Default)]
+pub(crate) struct Circular {
+    pub count: Slot<u32>,
+    pub radius: Slot<Quantity>,
 }
 
 /// What happens to it.
@@ -243,11 +262,8 @@ const RESERVED_SECTIONS: &[Reserved] = &[
     },
     Reserved { key: "errors", instead: "errors of making are not available yet; change the parameter itself", ignored: false },
 ];
-const RESERVED_LAYOUT: &[Reserved] = &[
-    Reserved { key: "array", instead: "draw every copy, or use `mirror`", ignored: false },
-    Reserved { key: "circular", instead: "draw every copy, or use `mirror`", ignored: false },
-    Reserved { key: "series", instead: "layers in series add their travels at equal force", ignored: false },
-];
+/// Of copies in one direction.
+const MOST_COPIES: f64 = 100.0;
 
 impl Describe for Spec {
     fn describe(&mut self, v: &mut dyn Visitor) {
@@ -256,7 +272,7 @@ impl Describe for Spec {
         self.material.describe(v, &Param::new("material", "What the beams are made of.").required());
         self.process.describe(v, &Param::new("process", "How it is made. Recorded; not used by the force analysis."));
         self.design.describe(v, &Param::new("design", "The flexure network.").required());
-        self.layout.describe(v, &Param::new("layout", "Copies of the drawn network; force, energy and pictures follow."));
+        self.layout.describe(v, &Param::new("layout", "Copies of the drawn network; force, travel, energy, mass and pictures follow."));
         v.members(
             &Param::new(
                 "load",
@@ -478,7 +494,37 @@ impl Describe for Beam {
 impl Describe for Layout {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.text(&Param::new("mirror", "Mirror line, `x = 0` or `y = 2 mm`: the mechanism has a mirrored second half."), &mut self.mirror);
-        v.reserved(RESERVED_LAYOUT);
+        self.array.describe(v, &Param::new("array", "Rows of copies in the plane, all on one block: forces add."));
+        self.circular.describe(
+            v,
+            &Param::new("circular", "Copies in planes around an axis along the load, all on one block: forces add. Not with `mirror`."),
+        );
+        let count = |key, doc| Param::new(key, doc).within(1.0, MOST_COPIES).default("1");
+        v.count(&count("plates", "Equal plates behind each other on one block: forces add."), &mut self.plates);
+        v.count(
+            &count("series", "Layers in series, each carried by the one before: displacements add at the same force."),
+            &mut self.series,
+        );
+    }
+}
+
+impl Describe for Array {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.count(&Param::new("count", "Rows, the drawn one included.").within(2.0, MOST_COPIES).required(), &mut self.count);
+        let spacing = Param::new("spacing", "From each row to the next.").of(Dimension::Length).within(SMALLEST_M, LARGEST_M);
+        v.quantity(&spacing.required(), &mut self.spacing);
+        v.direction(&Param::new("direction", "Direction from each row to the next; along the load by default."), &mut self.direction);
+    }
+}
+
+impl Describe for Circular {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.count(
+            &Param::new("count", "Copies around the axis, the drawn one included.").within(2.0, MOST_COPIES).required(),
+            &mut self.count,
+        );
+        let radius = Param::new("radius", "Distance of the load node from the axis, which lies on its side away from the network.");
+        v.quantity(&radius.of(Dimension::Length).within(0.0, LARGEST_M).required(), &mut self.radius);
     }
 }
 
@@ -490,13 +536,13 @@ impl Describe for Load {
             &mut self.direction,
         );
         v.quantity(
-            &Param::new("travel", "Largest displacement d, from where the load before left the node.")
+            &Param::new("travel", "Largest displacement d of the whole layout, from where the load before left the node: of two layers in series each takes half.")
                 .of(Dimension::Length)
                 .within(SMALLEST_M, LARGEST_M),
             &mut self.travel,
         );
         v.quantity(
-            &Param::new("force", "Largest force, of constant direction, on the whole layout: of two halves each takes half.")
+            &Param::new("force", "Largest force, of constant direction, on the whole layout: of two copies each takes half.")
                 .of(Dimension::Force)
                 .within(SMALLEST_N, 1e9),
             &mut self.force,

@@ -31,14 +31,10 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
             "Bending, stretching and shear without limit on rotation (Reissner 1972). As the axial and shear stiffness grow it becomes the paper's inextensible model, `model.beam = \"inextensible\"`.",
         ),
     };
-    let halves = if design.mirror.is_some() {
-        "The drawn network is solved; its mirrored half moves alike, and force, energy and stiffness count both."
-    } else {
-        "The drawn network is the whole mechanism."
-    };
+    let copies = copies(design);
     vec![
         beams,
-        statement("Network", format!("{} {}{halves}", joints(design), bodies(design))),
+        statement("Network", format!("{} {}{copies}", joints(design), bodies(design))),
         statement("Loads", loads(design)),
         statement(
             "Solution",
@@ -50,6 +46,28 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
         ),
         statement("Material data", material_data(design)),
     ]
+}
+
+/// What stands beside the drawn network, and what that does to the results.
+fn copies(design: &Design) -> String {
+    let layout = &design.layout;
+    if !layout.repeats() {
+        return if layout.mirror.is_some() {
+            "The drawn network is solved; its mirrored half moves alike, and force, energy and stiffness count both.".to_owned()
+        } else {
+            "The drawn network is the whole mechanism.".to_owned()
+        };
+    }
+    let mut text = format!(
+        "The drawn network is solved; the mechanism is that network{}. All copies move alike. The force is {} times that of the drawn network",
+        layout.words(),
+        layout.copies()
+    );
+    if layout.layers > 1 {
+        text.push_str(&format!(", the displacement {} times its displacement", layout.layers));
+    }
+    text.push('.');
+    text
 }
 
 /// How beams meet.
@@ -64,10 +82,10 @@ fn joints(design: &Design) -> &'static str {
 
 /// How far a load goes on the whole layout: `2 N`, `5 mm`, `3°`.
 pub(crate) fn amount(design: &Design, drive: &Drive, to: f64) -> String {
-    let (copies, units) = (design.copies(), &design.units);
+    let (copies, layers, units) = (design.copies(), design.layers(), &design.units);
     let named = |symbol: &str, dimension| Unit::parse(symbol).unwrap_or_else(|_| Unit::si(dimension));
     match drive {
-        Drive::Displacement { .. } => format_si(to, &units.displacement, 4),
+        Drive::Displacement { .. } => format_si(layers * to, &units.displacement, 4),
         Drive::Force { .. } => format_si(copies * to, &units.force, 4),
         Drive::Rotation { .. } => format_si(to, &named("deg", Dimension::Angle), 4),
         Drive::Moment { .. } => format_si(copies * to, &named("N*mm", Dimension::Torque), 4),
@@ -254,6 +272,15 @@ fn leaving(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
                 "from Δ = {} on the computed shape is unstable even with the {} held: a real part leaves it, and the results hold only up to there",
                 show(from),
                 if design.control == Control::Travel { "displacement" } else { "force" }
+            ),
+        });
+    }
+    if let Some(from) = behaviour.stack.as_ref().and_then(|s| s.apart_from_m) {
+        all.push(Warning {
+            code: "W0512",
+            message: format!(
+                "from Δ = {} on the layers do not move alike: curves and metrics are those of layers that do, the figure of the layers shows what they do",
+                show(from)
             ),
         });
     }

@@ -39,7 +39,7 @@ impl Words<'_> {
 
     fn show(&self, control: f64) -> String {
         match self.design.control {
-            Control::Travel => self.displacement(control),
+            Control::Travel => self.displacement(self.design.layers() * control),
             Control::Force => self.force(control),
         }
     }

@@ -44,6 +44,14 @@ pub(crate) fn task(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose
 
 /// Studies look at forces over a prescribed displacement from rest.
 fn check_drive(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<()> {
+    if let Some(series) = spec.layout.series.as_ref().filter(|s| s.value > 1) {
+        diagnostics.push(
+            Diagnostic::error("E0316", series.span, "studies look at one layer: layers in series scatter each by itself, and may part")
+                .label("several layers")
+                .help("leave out `series` and give the travel of one layer; stack the result"),
+        );
+        return None;
+    }
     if matches!(design.network.drive, Drive::Displacement { .. }) && design.network.before.is_empty() {
         return Some(());
     }

@@ -6,7 +6,8 @@
 use forcewright_base::maths;
 use forcewright_beam::{Path, Point, Rotation, Support};
 
-use crate::design::{Design, Mirror};
+use crate::design::Design;
+use crate::layout::Mirror;
 
 /// Every so many stations are looked at.
 const STRIDE: usize = 4;
@@ -24,16 +25,17 @@ pub struct Sway {
 
 /// Whether the load node is where the two halves are joined: on the mirror line, or beside it in a rigid block.
 pub(crate) fn joins_halves(design: &Design) -> bool {
-    let Some(mirror) = design.mirror else { return false };
+    let Some(mirror) = design.layout.mirror else { return false };
     let node = &design.network.nodes[design.load_node];
     let guided = matches!(node.support, Support::Slider { rotation: Rotation::Fixed, .. });
     guided || mirror.holds(&design.network, node.position_m)
 }
 
 impl Sway {
-    /// Looks at every fourth state of a path, the last included; `None` where symmetry does not separate the motions.
+    /// Looks at every fourth state of a path, the last included; `None` where symmetry does not separate the motions, and for rows, planes
+    /// and layers, which must be guided.
     pub(crate) fn of(design: &Design, path: &Path) -> Option<Self> {
-        if !joins_halves(design) {
+        if !joins_halves(design) || design.layout.repeats() {
             return None;
         }
         let last = path.points.len().checked_sub(1)?;
@@ -82,7 +84,7 @@ struct Block {
 
 impl Block {
     fn of(design: &Design, path: &Path, point: &Point) -> Option<Self> {
-        let mirror = design.mirror?;
+        let mirror = design.layout.mirror?;
         let stiffness = path.output_stiffness(point)?;
         let node = design.network.nodes.get(design.load_node)?;
         let moved = point.nodes.get(design.load_node)?;
