@@ -40,6 +40,16 @@ fn choices(command: Command) -> Command {
     )
 }
 
+/// Where results go: a folder, if nothing else is said.
+fn out(help: &'static str) -> Arg {
+    Arg::new("out")
+        .long("out")
+        .value_name("DIR")
+        .value_hint(ValueHint::DirPath)
+        .value_parser(clap::value_parser!(std::path::PathBuf))
+        .help(help)
+}
+
 fn json() -> Arg {
     Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one JSON document to standard output")
 }
@@ -73,14 +83,7 @@ fn solve() -> Command {
     let command = Command::new("solve")
         .about("Analyse a project and check its requirements")
         .arg(file().help("Project file"))
-        .arg(
-            Arg::new("out")
-                .long("out")
-                .value_name("DIR")
-                .value_hint(ValueHint::DirPath)
-                .value_parser(clap::value_parser!(std::path::PathBuf))
-                .help("Write report.html, result.json, curves.csv and the figures into this folder"),
-        )
+        .arg(out("Write report.html, result.json, curves.csv and the figures into this folder"))
         .arg(json());
     choices(command).after_help(EXIT_CODES)
 }
@@ -104,15 +107,7 @@ fn optimise() -> Command {
     let command = Command::new("optimise")
         .about("Search for a better design: a new project file, and a report of the search")
         .arg(file().help("Project file with a section [optimise]"))
-        .arg(
-            Arg::new("out")
-                .long("out")
-                .value_name("DIR")
-                .required(true)
-                .value_hint(ValueHint::DirPath)
-                .value_parser(clap::value_parser!(std::path::PathBuf))
-                .help("Write the new project file, report.html and result.json into this folder"),
-        )
+        .arg(out("Write the new project file, report.html and result.json into this folder").required(true))
         .arg(number("front", "The best goal over values of a key: a Pareto front").value_name("KEY=SPEC"))
         .arg(number("starts", "Searches, instead of `starts` of the file").value_parser(clap::value_parser!(u32).range(1..=100_000)))
         .arg(number("seed", "Seed of the starts after the first, instead of `seed` of the file").value_parser(clap::value_parser!(u32)))
@@ -142,7 +137,7 @@ fn sweep() -> Command {
                 .required(true)
                 .action(ArgAction::Append),
         )
-        .arg(out())
+        .arg(out("Write OUT.csv and OUT.json; a folder gets sweep.csv and sweep.json").value_name("PATH").value_hint(ValueHint::AnyPath))
         .arg(
             option("metrics", "NAMES", "Only these metrics, in this order, such as force_at_end,stress_max")
                 .value_delimiter(',')
@@ -160,15 +155,6 @@ fn sweep() -> Command {
         .arg(Arg::new("yes").long("yes").action(ArgAction::SetTrue).help("Confirm a sweep of more than ten million designs"))
         .arg(json());
     choices(command).after_help(SWEEP_HELP)
-}
-
-fn out() -> Arg {
-    Arg::new("out")
-        .long("out")
-        .value_name("PATH")
-        .value_hint(ValueHint::AnyPath)
-        .value_parser(clap::value_parser!(std::path::PathBuf))
-        .help("Write OUT.csv and OUT.json; a folder gets sweep.csv and sweep.json")
 }
 
 fn formats() -> Arg {
@@ -201,14 +187,7 @@ fn tolerance() -> Command {
     let command = Command::new("tolerance")
         .about("Draw designs from the scatter of making (± and [tolerance]): yield, causes, needed tolerances")
         .arg(file().help("Project file"))
-        .arg(
-            Arg::new("out")
-                .long("out")
-                .value_name("DIR")
-                .value_hint(ValueHint::DirPath)
-                .value_parser(clap::value_parser!(std::path::PathBuf))
-                .help("Write report.html and result.json into this folder"),
-        )
+        .arg(out("Write report.html and result.json into this folder"))
         .arg(count("samples", "Designs drawn; without it those of the file").value_parser(clap::value_parser!(u32).range(64..=100_000_000)))
         .arg(count("seed", "Seed of the draws; without it that of the file"))
         .arg(json());

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{folder_with, run};
+use common::{assert_near, folder_with, number, run};
 use forcewright::base::maths;
 
 /// A strip clamped at one end and kept parallel at the other: with small deflections F = 12EIδ/L³ and σ = 6E(w/2)δ/L².
@@ -39,14 +39,6 @@ objective = { minimise = "mass" }
 "design.thickness" = { range = ["0.2 mm", "20 mm"] }
 "design.depth" = { range = ["1 mm", "20 mm"] }
 "#;
-
-fn number(value: &serde_json::Value) -> f64 {
-    value.as_f64().unwrap_or(f64::NAN)
-}
-
-fn assert_near(found: f64, wanted: f64, relative: f64, what: &str) {
-    assert!((found / wanted - 1.0).abs() < relative, "{what}: {found}, wanted {wanted}");
-}
 
 #[test]
 fn the_least_mass_is_that_of_the_closed_form() {

@@ -8,48 +8,9 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use common::{folder_with, listing, run};
+use common::{GUIDED, assert_near, folder_with, listing, number, run};
 use forcewright::base::maths;
 
-/// A strip clamped at one end and kept parallel at the other: with small deflections F = 12EIδ/L³ and σ = 6E(w/2)δ/L².
-const GUIDED: &str = r#"# A guided strip.
-schema = 1
-mechanism = "compliant"
-title = "A guided strip"
-
-[requirements]
-stress = { safety_factor = 2 }       # keep
-
-[material]
-use = "C75S"
-young_modulus = "200 GPa"
-yield_stress = "600 MPa"
-
-[design]
-thickness = "0.5 mm"   # in the plane
-depth = '10 mm'
-
-[design.nodes]
-a = { at = ["0 mm", "0 mm"], support = "clamped" }
-b = { at = ["100 mm", "0 mm"], support = "parallel" } # guided
-
-[[design.beams]]
-name = "strip"
-between = ["a", "b"]
-straight = true
-
-[load]
-node = "b"
-direction = [0, 1]
-travel = "0.1 mm"
-
-[model]
-beam = "inextensible"
-
-[optimise]
-objective = { maximise = "force_at_end" }
-variables = { "design.thickness" = { range = ["0.2 mm", "80 mm"] } }
-"#;
 /// Young's modulus, length, depth and deflection of it, SI.
 const E_L_D_TRAVEL: [f64; 4] = [200e9, 0.1, 0.01, 1e-4];
 
@@ -59,14 +20,6 @@ fn optimise(folder: &Path, extra: &[&str]) -> common::Run {
 
 fn cube(x: f64) -> f64 {
     x * x * x
-}
-
-fn number(value: &serde_json::Value) -> f64 {
-    value.as_f64().unwrap_or(f64::NAN)
-}
-
-fn assert_near(found: f64, wanted: f64, relative: f64, what: &str) {
-    assert!((found / wanted - 1.0).abs() < relative, "{what}: {found}, wanted {wanted}");
 }
 
 #[test]

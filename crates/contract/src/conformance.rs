@@ -23,6 +23,7 @@ use crate::codes;
 use crate::data::{DataFile, names_a_file};
 use crate::describe::{Along, Describe, Form, Located, Members, Param, Range, Reserved, Slot, Visitor, Word, member_path};
 use crate::family::{Entry, Family, Mechanism};
+use crate::numbers::{self, Part};
 use crate::project::{Choices, Project};
 use crate::tree::{Item, Table, Value};
 use crate::{paths, read};
@@ -469,7 +470,9 @@ fn parameters<M: Mechanism>(example: &str) {
 
 /// A key that does not exist is an error with a way out, in every table.
 fn unknown_keys<M: Mechanism>(example: &str) {
-    let mut places = Numbers::of::<M>(example).tables;
+    let mut tables = Tables::default();
+    filled::<M>(example).describe(&mut tables);
+    let mut places = tables.paths;
     places.push(String::new());
     assert!(places.len() >= 4, "{places:?}");
     for place in places {
@@ -509,9 +512,9 @@ enum Shape {
     /// One of a list of bare numbers.
     List(Vec<f64>, usize),
     /// One coordinate of a point.
-    Point([f64; 2], usize),
-    /// One coordinate of one of several points.
-    Points(Vec<[f64; 2]>, usize),
+    Point(Vec<f64>, usize),
+    /// One coordinate of one of several points, all coordinates one after the other.
+    Points(Vec<f64>, usize),
 }
 
 impl Number {
@@ -530,7 +533,7 @@ impl Number {
             Shape::Point(all, at) => coordinates(all, *at),
             Shape::Points(all, at) => {
                 let inside = |i: usize| at.checked_sub(2 * i).filter(|k| *k < 2).unwrap_or(2);
-                list(all.iter().enumerate().map(|(i, point)| coordinates(point, inside(i))).collect())
+                list(all.chunks(2).enumerate().map(|(i, point)| coordinates(point, inside(i))).collect())
             }
         };
         format!("{}={value}", self.path)
@@ -552,82 +555,31 @@ impl Number {
     }
 }
 
-/// Collects the numbers of a filled description, and the paths of its tables.
+/// Collects the counts of a filled description, and the paths of its tables.
 #[derive(Default)]
-struct Numbers {
+struct Tables {
     prefix: String,
-    found: Vec<Number>,
-    tables: Vec<String>,
+    counts: Vec<Number>,
+    paths: Vec<String>,
 }
 
-impl Numbers {
-    fn of<M: Mechanism>(example: &str) -> Self {
-        let mut project = project(example, &[]);
-        let mut spec: M::Spec = read::read(&project.tree, project.root, &mut project.diagnostics);
-        assert!(M::resolve(&mut spec, &mut project.diagnostics).is_some(), "the example was refused");
-        let mut collector = Self::default();
-        spec.describe(&mut collector);
-        collector
-    }
-
-    fn note(&mut self, param: &Param, value: f64, shape: Shape) {
-        let path = format!("{}{}", self.prefix, param.key);
-        self.found.push(Number { path, dimension: param.dimension, range: param.range, value, shape });
-    }
-
+impl Tables {
     fn inside(&mut self, part: &str, body: impl FnOnce(&mut Self)) {
         let before = self.prefix.len();
         self.prefix.push_str(part);
         self.prefix.push('.');
-        self.tables.push(self.prefix.clone());
+        self.paths.push(self.prefix.clone());
         body(self);
         self.prefix.truncate(before);
     }
 }
 
-impl Visitor for Numbers {
-    fn quantity(&mut self, param: &Param, slot: &mut Slot<Quantity>) {
-        if let Some(located) = slot {
-            self.note(param, located.value.si, Shape::Quantity);
-        }
-    }
+impl Visitor for Tables {
     fn count(&mut self, param: &Param, slot: &mut Slot<u32>) {
-        if let Some(located) = slot {
-            self.note(param, f64::from(located.value), Shape::Count);
-        }
-    }
-    fn numbers(&mut self, param: &Param, slot: &mut Slot<Vec<f64>>) {
         let Some(located) = slot else { return };
-        for (at, value) in located.value.iter().enumerate() {
-            self.note(param, *value, Shape::List(located.value.clone(), at));
-        }
+        let (path, value) = (format!("{}{}", self.prefix, param.key), f64::from(located.value));
+        self.counts.push(Number { path, dimension: param.dimension, range: param.range, value, shape: Shape::Count });
     }
-    fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>) {
-        let Some(located) = slot else { return };
-        let all = [located.value[0].si, located.value[1].si];
-        for (at, value) in all.into_iter().enumerate() {
-            self.note(param, value, Shape::Point(all, at));
-        }
-    }
-    fn points(&mut self, param: &Param, _: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
-        let Some(located) = slot else { return };
-        let all: Vec<[f64; 2]> = located.value.iter().map(|p| [p.value[0].si, p.value[1].si]).collect();
-        for (index, value) in all.as_flattened().iter().enumerate() {
-            self.note(param, *value, Shape::Points(all.clone(), index));
-        }
-    }
-    fn along(&mut self, param: &Param, _: usize, slot: &mut Slot<Along>) {
-        if let Some(Located { value: Along::Constant(quantity), .. }) = slot {
-            self.note(param, quantity.si, Shape::Quantity);
-        }
-    }
-    fn deferred(&mut self, _: &Param, _: &mut Slot<Value>) {}
-    fn direction(&mut self, _: &Param, _: &mut Slot<[f64; 2]>) {}
-    fn text(&mut self, _: &Param, _: &mut Slot<String>) {}
-    fn file(&mut self, _: &Param, _: &mut Slot<DataFile>) {}
-    fn flag(&mut self, _: &Param, _: &mut Slot<bool>) {}
-    fn choice(&mut self, _: &Param, _: &'static [Word], _: &mut Slot<&'static str>) {}
-    fn names(&mut self, _: &Param, _: usize, _: usize, _: &mut Slot<Vec<Located<String>>>) {}
     fn section(&mut self, param: &Param, _: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor)) {
         self.inside(param.key, |collector| body(collector));
     }
@@ -641,14 +593,44 @@ impl Visitor for Numbers {
             self.inside(&name, |collector| members.describe(index, collector));
         }
     }
-    fn free(&mut self, _: &Param) {}
-    fn reserved(&mut self, _: &'static [Reserved]) {}
+}
+
+/// The example, filled in.
+fn filled<M: Mechanism>(example: &str) -> M::Spec {
+    let mut project = project(example, &[]);
+    let mut spec: M::Spec = read::read(&project.tree, project.root, &mut project.diagnostics);
+    assert!(M::resolve(&mut spec, &mut project.diagnostics).is_some(), "the example was refused");
+    spec
+}
+
+/// Every number of the example that stands alone or in a list, a point or points, and every count.
+fn numbers<M: Mechanism>(example: &str) -> Vec<Number> {
+    let mut spec = filled::<M>(example);
+    let found = numbers::numbers_of(&mut spec);
+    let key = |number: &numbers::Number| number.path.rsplitn(number.part.depth() + 1, '.').last().unwrap_or_default().to_owned();
+    let values = |path: &str| found.iter().filter(|n| key(n) == path).map(|n| n.si).collect::<Vec<f64>>();
+    let settable = |number: &numbers::Number| {
+        let path = key(number);
+        let shape = match number.part {
+            Part::Whole => Shape::Quantity,
+            Part::Entry(at) => Shape::List(values(&path), at),
+            Part::Coordinate(at) => Shape::Point(values(&path), at),
+            Part::OfPoints(index, at) => Shape::Points(values(&path), 2 * index + at),
+            Part::AtPlace(..) => return None,
+        };
+        Some(Number { path, dimension: number.dimension, range: number.range, value: number.si, shape })
+    };
+    let mut all: Vec<Number> = found.iter().filter_map(settable).collect();
+    let mut tables = Tables::default();
+    spec.describe(&mut tables);
+    all.append(&mut tables.counts);
+    all
 }
 
 /// Every number of the example at the ends of its range, halved and doubled: refused with a reason, or analysed in bounded time to
 /// finite numbers. Beyond the ends it is refused as out of range.
 fn edges<M: Mechanism>(example: &str) {
-    let numbers = Numbers::of::<M>(example).found;
+    let numbers = numbers::<M>(example);
     assert!(numbers.len() >= 5, "the example has only {} numbers", numbers.len());
     let mut settings = Vec::new();
     for number in &numbers {

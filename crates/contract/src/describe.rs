@@ -190,34 +190,35 @@ pub struct Reserved {
     pub ignored: bool,
 }
 
-/// What looks at a description. Values are shown as mutable slots: a reader fills them, a table prints them.
+/// What looks at a description. Values are shown as mutable slots: a reader fills them, a table prints them. A visitor leaves out the
+/// kinds of values that it has no use for; tables and members it must go into.
 pub trait Visitor {
     /// A number with a unit and perhaps a tolerance; bare where it is dimensionless.
-    fn quantity(&mut self, param: &Param, slot: &mut Slot<Quantity>);
+    fn quantity(&mut self, _param: &Param, _slot: &mut Slot<Quantity>) {}
     /// A bare whole number.
-    fn count(&mut self, param: &Param, slot: &mut Slot<u32>);
+    fn count(&mut self, _param: &Param, _slot: &mut Slot<u32>) {}
     /// A list of bare numbers, at most 32.
-    fn numbers(&mut self, param: &Param, slot: &mut Slot<Vec<f64>>);
+    fn numbers(&mut self, _param: &Param, _slot: &mut Slot<Vec<f64>>) {}
     /// A point `["x", "y"]` of two quantities.
-    fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>);
+    fn point(&mut self, _param: &Param, _slot: &mut Slot<[Quantity; 2]>) {}
     /// Points `[["x", "y"], …]`, at most `most`.
-    fn points(&mut self, param: &Param, most: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>);
+    fn points(&mut self, _param: &Param, _most: usize, _slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {}
     /// A quantity, or pairs `[["0", "1 mm"], ["1", "0.6 mm"]]` of ascending places from 0 to 1 and quantities, at most `most`.
-    fn along(&mut self, param: &Param, most: usize, slot: &mut Slot<Along>);
+    fn along(&mut self, _param: &Param, _most: usize, _slot: &mut Slot<Along>) {}
     /// A value whose quantity follows from another key: kept as it stands, and read when that key is known.
-    fn deferred(&mut self, param: &Param, slot: &mut Slot<Value>);
+    fn deferred(&mut self, _param: &Param, _slot: &mut Slot<Value>) {}
     /// A direction `[x, y]` of two bare numbers, not both zero.
-    fn direction(&mut self, param: &Param, slot: &mut Slot<[f64; 2]>);
+    fn direction(&mut self, _param: &Param, _slot: &mut Slot<[f64; 2]>) {}
     /// Free text.
-    fn text(&mut self, param: &Param, slot: &mut Slot<String>);
+    fn text(&mut self, _param: &Param, _slot: &mut Slot<String>) {}
     /// The path of a file beside the project, whose key is `file` or ends in `_file` ([`crate::data::names_a_file`]).
-    fn file(&mut self, param: &Param, slot: &mut Slot<DataFile>);
+    fn file(&mut self, _param: &Param, _slot: &mut Slot<DataFile>) {}
     /// `true` or `false`.
-    fn flag(&mut self, param: &Param, slot: &mut Slot<bool>);
+    fn flag(&mut self, _param: &Param, _slot: &mut Slot<bool>) {}
     /// One word of a closed set.
-    fn choice(&mut self, param: &Param, words: &'static [Word], slot: &mut Slot<&'static str>);
+    fn choice(&mut self, _param: &Param, _words: &'static [Word], _slot: &mut Slot<&'static str>) {}
     /// Names of other members, at least `least` and at most `most`.
-    fn names(&mut self, param: &Param, least: usize, most: usize, slot: &mut Slot<Vec<Located<String>>>);
+    fn names(&mut self, _param: &Param, _least: usize, _most: usize, _slot: &mut Slot<Vec<Located<String>>>) {}
     /// A table of its own; `present` is filled where it is given.
     fn section(&mut self, param: &Param, present: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor));
     /// Members with names.
@@ -225,9 +226,9 @@ pub trait Visitor {
     /// Members that are tables of this table itself, beside its keys; shown last. The key of `param` is `*`.
     fn tables(&mut self, param: &Param, members: &mut dyn Members);
     /// A table whose content is not described here: it is merged before anything is read.
-    fn free(&mut self, param: &Param);
+    fn free(&mut self, _param: &Param) {}
     /// Keys of this table that the language has but this version does not.
-    fn reserved(&mut self, keys: &'static [Reserved]);
+    fn reserved(&mut self, _keys: &'static [Reserved]) {}
 }
 
 /// Something that can be described.

@@ -6,9 +6,7 @@
 use forcewright_base::diagnostics::Span;
 use forcewright_base::units::{Dimension, Quantity, Tolerance, Unit};
 
-use crate::data::DataFile;
-use crate::describe::{Along, Describe, Form, Located, Members, Param, Range, Reserved, Slot, Visitor, Word, member_path};
-use crate::tree::Value;
+use crate::describe::{Along, Describe, Form, Located, Members, Param, Range, Slot, Visitor, member_path};
 
 /// A number of a design.
 #[derive(Clone, Debug)]
@@ -129,7 +127,6 @@ impl Visitor for Collector {
             self.note(param, Part::Whole, &located.value, located.span);
         }
     }
-    fn count(&mut self, _: &Param, _: &mut Slot<u32>) {}
     fn numbers(&mut self, param: &Param, slot: &mut Slot<Vec<f64>>) {
         let Some(located) = slot else { return };
         for (index, value) in located.value.iter().enumerate() {
@@ -161,13 +158,6 @@ impl Visitor for Collector {
             }
         }
     }
-    fn deferred(&mut self, _: &Param, _: &mut Slot<Value>) {}
-    fn direction(&mut self, _: &Param, _: &mut Slot<[f64; 2]>) {}
-    fn text(&mut self, _: &Param, _: &mut Slot<String>) {}
-    fn file(&mut self, _: &Param, _: &mut Slot<DataFile>) {}
-    fn flag(&mut self, _: &Param, _: &mut Slot<bool>) {}
-    fn choice(&mut self, _: &Param, _: &'static [Word], _: &mut Slot<&'static str>) {}
-    fn names(&mut self, _: &Param, _: usize, _: usize, _: &mut Slot<Vec<Located<String>>>) {}
     fn section(&mut self, param: &Param, _: &mut Slot<()>, body: &mut dyn FnMut(&mut dyn Visitor)) {
         self.inside(param.key, |collector| body(collector));
     }
@@ -181,8 +171,6 @@ impl Visitor for Collector {
             self.inside(&name, |collector| members.describe(index, collector));
         }
     }
-    fn free(&mut self, _: &Param) {}
-    fn reserved(&mut self, _: &'static [Reserved]) {}
 }
 
 #[cfg(test)]

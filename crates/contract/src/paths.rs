@@ -4,7 +4,7 @@ use forcewright_base::units::Quantity;
 use forcewright_model::ParameterRow;
 
 use crate::data::DataFile;
-use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word, member_path};
+use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Slot, Visitor, Word, member_path};
 use crate::tree::Value;
 
 /// Every path that a description knows, members written as `*`: `design.beams.*.bend`.
@@ -98,7 +98,6 @@ impl Visitor for Keys {
     fn free(&mut self, param: &Param) {
         self.note(param);
     }
-    fn reserved(&mut self, _: &'static [Reserved]) {}
 }
 
 struct Rows {
@@ -187,6 +186,4 @@ impl Visitor for Rows {
             self.inside(&name, |lister| members.describe(index, lister));
         }
     }
-    fn free(&mut self, _: &Param) {}
-    fn reserved(&mut self, _: &'static [Reserved]) {}
 }

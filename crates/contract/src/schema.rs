@@ -279,5 +279,4 @@ impl Visitor for Listing {
     fn free(&mut self, param: &Param) {
         self.row(param, "tables of differences");
     }
-    fn reserved(&mut self, _: &'static [Reserved]) {}
 }

@@ -12,6 +12,46 @@ const LIMIT: Duration = Duration::from_secs(20);
 /// The example that everybody starts from.
 pub(crate) const EXAMPLE: &str = include_str!("../../../../examples/compliant/lan-table3.toml");
 
+/// A strip clamped at one end and kept parallel at the other: with small deflections F = 12EIδ/L³ and σ = 6E(w/2)δ/L².
+pub(crate) const GUIDED: &str = r#"# A guided strip.
+schema = 1
+mechanism = "compliant"
+title = "A guided strip"
+
+[requirements]
+stress = { safety_factor = 2 }       # keep
+
+[material]
+use = "C75S"
+young_modulus = "200 GPa"
+yield_stress = "600 MPa"
+
+[design]
+thickness = "0.5 mm"   # in the plane
+depth = '10 mm'
+
+[design.nodes]
+a = { at = ["0 mm", "0 mm"], support = "clamped" }
+b = { at = ["100 mm", "0 mm"], support = "parallel" } # guided
+
+[[design.beams]]
+name = "strip"
+between = ["a", "b"]
+straight = true
+
+[load]
+node = "b"
+direction = [0, 1]
+travel = "0.1 mm"
+
+[model]
+beam = "inextensible"
+
+[optimise]
+objective = { maximise = "force_at_end" }
+variables = { "design.thickness" = { range = ["0.2 mm", "80 mm"] } }
+"#;
+
 /// What a run gave.
 #[derive(Debug)]
 pub(crate) struct Run {
@@ -81,6 +121,16 @@ pub(crate) fn folder_with(bytes: &[u8]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.toml"), bytes).unwrap();
     folder
+}
+
+/// A number of a JSON document; not a number where it is none.
+pub(crate) fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+/// Asserts that a value is the wanted one up to a relative difference.
+pub(crate) fn assert_near(found: f64, wanted: f64, relative: f64, what: &str) {
+    assert!((found / wanted - 1.0).abs() < relative, "{what}: {found}, wanted {wanted}");
 }
 
 /// Everything in a folder, sorted.

@@ -2,41 +2,15 @@
 
 mod common;
 
-use common::{POM, SplitMix, add, cantilever, close, near, random_network, table3_by_nodes, table3_by_shapes};
+use common::{
+    POM, SplitMix, add, cantilever, close, more_parameters, near, parameters, random_network, scale, table3_by_nodes, table3_by_shapes,
+};
 use forcewright_beam::{
     Axis, CurveSolver, CurveStates, Derivatives, Drive, Face, GradientError, Network, NetworkError, Node, Output, Parameter, Path, Point,
     Settings, Shape, Support, Theory, trace,
 };
 
 const THEORIES: [Theory; 2] = [Theory::Inextensible, Theory::Reissner];
-
-/// What an optimiser of the half mechanism moves: two nodes, both bends of four beams, and the thickness of all.
-fn parameters() -> Vec<Parameter> {
-    let mut all = vec![Parameter::NodeX(2), Parameter::NodeY(2), Parameter::NodeX(3), Parameter::NodeY(3)];
-    all.extend((0..4).flat_map(|beam| [1, 2].map(|k| Parameter::Bend { beam, k })));
-    all.push(Parameter::AllThickness);
-    all
-}
-
-/// All kinds of parameters.
-fn more_parameters() -> Vec<Parameter> {
-    let mut all = parameters();
-    all.extend([Parameter::NodeX(0), Parameter::NodeY(1), Parameter::NodeX(4), Parameter::NodeY(4)]);
-    all.extend([Parameter::Thickness(1), Parameter::Depth(2), Parameter::Young(3), Parameter::Poisson(0)]);
-    all.extend([Parameter::AllDepth, Parameter::AllYoung, Parameter::AllPoisson]);
-    all
-}
-
-/// A change of a parameter that matters about as much as others: 1 cm, 1 rad, the whole of a property.
-fn scale(parameter: Parameter) -> f64 {
-    match parameter {
-        Parameter::NodeX(_) | Parameter::NodeY(_) => 1e-2,
-        Parameter::Thickness(_) | Parameter::AllThickness => POM.thickness_m,
-        Parameter::Depth(_) | Parameter::AllDepth => POM.depth_m,
-        Parameter::Young(_) | Parameter::AllYoung => POM.young_pa,
-        _ => 1.0,
-    }
-}
 
 /// Outputs of one kind, which are compared relative to the largest of them.
 fn kinds() -> Vec<(&'static str, Vec<Output>)> {

@@ -231,7 +231,7 @@ pub fn study(evaluator: &dyn Evaluator, plan: &Plan, watch: &mut dyn FnMut(f64) 
     let points = run::points(plan, samples)?;
     let mut sampled = Sampled::new(measures, &limited, nominal.values.len());
     let finished =
-        run::designs(evaluator, &plan.population, &points, &mut |made| stage(made as f64, done), &mut |design| sampled.add(design));
+        run::designs(evaluator, &plan.population, &points, &mut |made| stage(made as f64, done), &mut |chunk| sampled.add(chunk));
     let mut study = sampled.into_study(plan, variables, limiting, (nominal.values, nominal_measures));
     study.outputs = evaluator.outputs().to_vec();
     study.stations = (0..study.outputs.len()).map(|output| evaluator.stations(output)).collect();
@@ -258,35 +258,48 @@ struct Sampled<'a> {
     fan: Fan,
     spread: Fan,
     reasons: run::Reasons,
+    /// Chunks that are not yet in the fans.
+    waiting: Vec<run::Chunk>,
 }
+
+/// Chunks that go into the fans at once: the bins of a station, which are more than the nearest memory holds for all of them, are then
+/// at hand for most of their values.
+const TOGETHER: usize = 16;
 
 impl<'a> Sampled<'a> {
     fn new(measures: &'a [Measure], limited: &'a [usize], values: usize) -> Self {
         let verdicts = Verdicts::new(measures, limited);
-        Self { verdicts, fan: Fan::new(values), spread: Fan::new(measures.len()), reasons: run::Reasons::default() }
+        let (fan, spread) = (Fan::new(values), Fan::new(measures.len()));
+        Self { verdicts, fan, spread, reasons: run::Reasons::default(), waiting: Vec::with_capacity(TOGETHER) }
     }
 
-    fn add(&mut self, design: Result<(&[f64], &[f64]), &str>) {
-        match design {
-            Ok((values, measures)) => {
-                self.fan.add(values);
-                self.spread.add(measures);
-                self.verdicts.add(Some(measures));
-            }
-            Err(reason) => {
+    fn add(&mut self, chunk: run::Chunk) {
+        for design in chunk.designs() {
+            self.verdicts.add(design.ok());
+            if let Err(reason) = design {
                 self.reasons.add(reason);
-                self.verdicts.add(None);
             }
+        }
+        self.waiting.push(chunk);
+        if self.waiting.len() == TOGETHER {
+            self.empty();
         }
     }
 
+    fn empty(&mut self) {
+        self.fan.add_all(self.waiting.iter().flat_map(run::Chunk::values));
+        self.spread.add_all(self.waiting.iter().flat_map(run::Chunk::measures));
+        self.waiting.clear();
+    }
+
     fn into_study(
-        self,
+        mut self,
         plan: &Plan,
         variables: &[Variable],
         limiting: Vec<usize>,
         (nominal, nominal_measures): (Vec<f64>, Vec<Option<f64>>),
     ) -> Study {
+        self.empty();
         Study {
             outputs: Vec::new(),
             stations: Vec::new(),

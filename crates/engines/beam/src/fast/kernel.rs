@@ -75,7 +75,7 @@ impl<const M: usize, const Q: usize, const E: usize> Tables<M, Q, E> {
     }
 
     /// Rotations at all points: the even and the odd part of each pair at once.
-    #[inline]
+    #[inline(always)]
     fn rotations(&self, at: &Unknowns<M>) -> [Lane; Q] {
         let (mean, turn) = ((at.ends[0] + at.ends[1]) * 0.5, (at.ends[1] - at.ends[0]) * 0.5);
         let mut out = [Lane::ZERO; Q];
@@ -96,7 +96,7 @@ impl<const M: usize, const Q: usize, const E: usize> Tables<M, Q, E> {
     }
 
     /// As `recover` of the general path, for the modes beyond those solved for. `load` carries the weights and −L.
-    #[inline]
+    #[inline(always)]
     pub(super) fn beyond(&self, bending: Lane, load: &[Lane; Q]) -> [Lane; E] {
         let parts = Halves::new(load);
         let mut moments = [Lane::ZERO; E];
@@ -126,7 +126,7 @@ struct Halves<const Q: usize> {
 }
 
 impl<const Q: usize> Halves<Q> {
-    #[inline]
+    #[inline(always)]
     fn new(points: &[Lane; Q]) -> Self {
         let mut halves = Self { even: [Lane::ZERO; Q], odd: [Lane::ZERO; Q] };
         for q in 0..Q / 2 {
@@ -140,18 +140,24 @@ impl<const Q: usize> Halves<Q> {
     }
 
     /// The sum over all points of the product with an even or an odd function.
-    #[inline]
+    #[inline(always)]
     fn sum(&self, even: bool, row: &[Lane; Q]) -> Lane {
         if even { dot::<Q>(&self.even, row, Q.div_ceil(2)) } else { dot::<Q>(&self.odd, row, Q / 2) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn total(&self) -> Lane {
         total::<Q>(&self.even, Q.div_ceil(2))
     }
 }
 
-#[inline]
+/// The sum over the load where there is one of its own, else what it is made of.
+#[inline(always)]
+fn loaded<const Q: usize>(load: Option<&Halves<Q>>, (even, row): (bool, &[Lane; Q]), made: Lane) -> Lane {
+    load.map_or(made, |load| load.sum(even, row))
+}
+
+#[inline(always)]
 fn dot<const Q: usize>(a: &[Lane; Q], b: &[Lane; Q], count: usize) -> Lane {
     let mut sum = a[0] * b[0];
     for q in 1..count {
@@ -160,7 +166,7 @@ fn dot<const Q: usize>(a: &[Lane; Q], b: &[Lane; Q], count: usize) -> Lane {
     sum
 }
 
-#[inline]
+#[inline(always)]
 fn total<const Q: usize>(a: &[Lane; Q], count: usize) -> Lane {
     let mut sum = a[0];
     for q in 1..count {
@@ -263,7 +269,7 @@ pub(crate) fn linearise<const M: usize, const Q: usize, const E: usize>(
 }
 
 /// The same with the verdict per lane, in [`Condensed::margin`]. No lane depends on the others, if none does in `sin_cos`.
-#[inline]
+#[inline(always)]
 pub(crate) fn condense<const M: usize, const Q: usize, const E: usize>(
     tables: &Tables<M, Q, E>,
     beams: &Beams<Q>,
@@ -304,7 +310,7 @@ pub(crate) struct Points<const Q: usize> {
 }
 
 /// Fills in the points; the largest rotation at them.
-#[inline]
+#[inline(always)]
 fn evaluate<const M: usize, const Q: usize, const E: usize>(
     tables: &Tables<M, Q, E>,
     beams: &Beams<Q>,
@@ -350,7 +356,7 @@ fn evaluate<const M: usize, const Q: usize, const E: usize>(
 
 /// Second derivatives: bubbles by bubbles, lower triangle, in `inner`; by `φ_A`, `φ_B`, H, V and their residual in `outer`. Returns the
 /// second derivatives by (`φ_A`, `φ_B`, H, V), lower triangle, and the first, with the bubbles held.
-#[inline]
+#[inline(always)]
 fn integrate<const M: usize, const Q: usize, const E: usize>(
     tables: &Tables<M, Q, E>,
     beams: &Beams<Q>,
@@ -364,10 +370,6 @@ fn integrate<const M: usize, const Q: usize, const E: usize>(
     let (by_h, by_v) = (Halves::new(&points.by_h), Halves::new(&points.by_v));
     // Where nothing stretches, the load is a combination of the other two, and so are its sums.
     let load = if beams.soft { Some(Halves::new(&points.load)) } else { None };
-    let loaded = |even: bool, row: &[Lane; Q], by_h: Lane, by_v: Lane| match &load {
-        Some(load) => load.sum(even, row),
-        None => h * by_h + v * by_v,
-    };
     let (mut even, mut odd) = ([zero; Q], [zero; Q]);
     for k in 0..M {
         let (own, is_even) = (&tables.bubble[k], is_even(k));
@@ -385,7 +387,13 @@ fn integrate<const M: usize, const Q: usize, const E: usize>(
             (total::<Q>(&odd, half), dot::<Q>(&even, &tables.across, half))
         };
         let (h_sum, v_sum) = (by_h.sum(is_even, own), by_v.sum(is_even, own));
-        outer[k] = [(all - lean) * 0.5, (all + lean) * 0.5, h_sum, v_sum, loaded(is_even, own, h_sum, v_sum) + b * at.bubbles[k]];
+        outer[k] = [
+            (all - lean) * 0.5,
+            (all + lean) * 0.5,
+            h_sum,
+            v_sum,
+            loaded(load.as_ref(), (is_even, own), h * h_sum + v * v_sum) + b * at.bubbles[k],
+        ];
         for j in 0..=k {
             let other = &tables.bubble[j];
             inner[k][j] = if (k + j).is_multiple_of(2) { dot::<Q>(&even, other, Q.div_ceil(2)) } else { dot::<Q>(&odd, other, half) };
@@ -399,7 +407,7 @@ fn integrate<const M: usize, const Q: usize, const E: usize>(
     }
     let (h0, h1, v0, v1) = (by_h.total(), by_h.sum(false, x), by_v.total(), by_v.sum(false, x));
     let l0 = if let Some(load) = &load { load.total() } else { h * h0 + v * v0 };
-    let l1 = loaded(false, x, h1, v1);
+    let l1 = loaded(load.as_ref(), (false, x), h * h1 + v * v1);
     let moment = b * (at.ends[1] - at.ends[0]);
     let mut second = [[zero; 4]; 4];
     second[0][0] = (s[0] - s[1] * 2.0 + s[2]) * 0.25 + b;
@@ -412,7 +420,7 @@ fn integrate<const M: usize, const Q: usize, const E: usize>(
 
 /// L·D·Lᵀ of the bubbles in place, and the first half of the solution for five right-hand sides: `outer` becomes L⁻¹ of itself, `scaled`
 /// D⁻¹ of that. Counts negative pivots; returns the size of the smallest pivot.
-#[inline]
+#[inline(always)]
 fn eliminate<const M: usize>(
     inner: &mut [[Lane; M]; M],
     outer: &mut [[Lane; 5]; M],
@@ -453,7 +461,7 @@ fn eliminate<const M: usize>(
 }
 
 /// Eliminates the force: the flexibility block C is negative definite for a stable beam.
-#[inline]
+#[inline(always)]
 fn release<const M: usize, const Q: usize>(s: &[[Lane; 4]; 4], g: &[Lane; 4], at: &Unknowns<M>, out: &mut Condensed<M, Q>) {
     let (c00, c01, c11) = (s[2][2], s[3][2], s[3][3]);
     let trace = c00 + c11;
@@ -530,7 +538,7 @@ impl<const M: usize, const Q: usize> Default for Condensed<M, Q> {
 
 impl<const M: usize, const Q: usize> Condensed<M, Q> {
     /// The change of the inner unknowns that goes with a change of the ends. `residual` is 1 for a Newton step, 0 for a tangent.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn expand(&self, ends: [Lane; 2], apart: [Lane; 2], residual: f64) -> Unknowns<M> {
         let (mut force, mut bubbles) = ([Lane::ZERO; 2], [Lane::ZERO; M]);
         for i in 0..2 {
@@ -554,7 +562,7 @@ impl<const M: usize, const Q: usize> Condensed<M, Q> {
     }
 
     /// The modes beyond those solved for at the state that was linearised, and their change along a change of that state.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn beyond<const E: usize>(&self, tables: &Tables<M, Q, E>, bending: Lane, change: &Unknowns<M>) -> ([Lane; E], [Lane; E]) {
         let p = &self.points;
         let (mut along, rotations) = ([Lane::ZERO; Q], tables.rotations(change));

@@ -2,10 +2,39 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use fearless_simd::Level;
 use forcewright_base::maths;
 
 /// Beams per lane group.
 pub(crate) const LANES: usize = 4;
+
+/// The vector instructions of this processor, asked for once.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vectors(
+    #[cfg_attr(
+        not(any(target_arch = "x86", target_arch = "x86_64")),
+        allow(dead_code, reason = "elsewhere those of the target are all that there are")
+    )]
+    Level,
+);
+
+impl Vectors {
+    pub(crate) fn new() -> Self {
+        Self(Level::new())
+    }
+
+    /// Does work in lanes with four numbers per instruction where the processor can (AVX2), else with what every one can. Functions that
+    /// `work` calls without being inlined into it go on with the latter. Each operation is rounded by itself, never two as one, so that
+    /// the result is the same bits.
+    #[inline(always)]
+    pub(crate) fn run<R>(self, work: impl FnOnce() -> R) -> R {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        if let Some(four) = self.0.as_avx2() {
+            return fearless_simd::Simd::vectorize(four, work);
+        }
+        work()
+    }
+}
 
 /// One number of each of four beams, or of one beam of four designs. Aligned, so that arithmetic can take it from memory without a load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -127,7 +156,7 @@ impl Lane {
 
     /// Sine and cosine by a series of fixed length, so that no lane depends on the others: wrong by at most 1e-9 up to
     /// [`Lane::MODERATE`] rad.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn sin_cos_moderate(self) -> (Self, Self) {
         series::<6>(self)
     }
@@ -172,7 +201,7 @@ fn nearest(x: Lane) -> Lane {
 }
 
 /// Sine and cosine by the series of half the angle with the terms up to `LAST`.
-#[inline]
+#[inline(always)]
 fn series<const LAST: usize>(x: Lane) -> (Lane, Lane) {
     let half = x * 0.5;
     let z = half * half;

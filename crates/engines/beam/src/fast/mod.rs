@@ -7,6 +7,8 @@
 //! one iteration at a higher one. Whatever is not safe here (a straight inextensible beam at rest, a fold, a load or rotation as
 //! drive, an unresolved shape) is handed to the general path.
 
+#![allow(clippy::inline_always, reason = "what is not inlined has no wide vector instructions: see `lanes::Vectors`")]
+
 mod batch;
 mod curve;
 mod gradient;

@@ -6,7 +6,9 @@ pub(crate) mod generator;
 pub(crate) mod shooting;
 
 use forcewright_base::{maths, quadrature::GaussLegendre};
-use forcewright_beam::{Beam, Drive, Joint, Network, Node, Path, Rotation, Section, Settings, Shape, ShapeError, Support, Theory, trace};
+use forcewright_beam::{
+    Beam, Drive, Joint, Network, Node, Parameter, Path, Rotation, Section, Settings, Shape, ShapeError, Support, Theory, trace,
+};
 
 /// Material and section of Table 2: `E = 2 GPa`, w = 1 mm, t = 10 mm. Poisson's ratio of polyoxymethylene is not in the paper.
 pub(crate) const POM: Section = Section { young_pa: 2e9, thickness_m: 1e-3, depth_m: 1e-2, poisson: Some(0.35) };
@@ -161,4 +163,32 @@ pub(crate) fn bent_at_random(
         shapes.push(Shape::from_chord(add(nodes[ENDS[i].1], nodes[ENDS[i].0], -1.0), &bends)?);
     }
     Ok(half_mechanism(nodes, shapes.try_into().expect("four"), POM))
+}
+
+/// What an optimiser of the half mechanism moves: two nodes, both bends of four beams, and the thickness of all.
+pub(crate) fn parameters() -> Vec<Parameter> {
+    let mut all = vec![Parameter::NodeX(2), Parameter::NodeY(2), Parameter::NodeX(3), Parameter::NodeY(3)];
+    all.extend((0..4).flat_map(|beam| [1, 2].map(|k| Parameter::Bend { beam, k })));
+    all.push(Parameter::AllThickness);
+    all
+}
+
+/// All kinds of parameters.
+pub(crate) fn more_parameters() -> Vec<Parameter> {
+    let mut all = parameters();
+    all.extend([Parameter::NodeX(0), Parameter::NodeY(1), Parameter::NodeX(4), Parameter::NodeY(4)]);
+    all.extend([Parameter::Thickness(1), Parameter::Depth(2), Parameter::Young(3), Parameter::Poisson(0)]);
+    all.extend([Parameter::AllDepth, Parameter::AllYoung, Parameter::AllPoisson]);
+    all
+}
+
+/// A change of a parameter that matters about as much as others: 1 cm, 1 rad, the whole of a property.
+pub(crate) fn scale(parameter: Parameter) -> f64 {
+    match parameter {
+        Parameter::NodeX(_) | Parameter::NodeY(_) => 1e-2,
+        Parameter::Thickness(_) | Parameter::AllThickness => POM.thickness_m,
+        Parameter::Depth(_) | Parameter::AllDepth => POM.depth_m,
+        Parameter::Young(_) | Parameter::AllYoung => POM.young_pa,
+        _ => 1.0,
+    }
 }

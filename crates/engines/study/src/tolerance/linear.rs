@@ -1,5 +1,7 @@
 //! What the Jacobian at the nominal design says of the scatter.
 
+use std::ops::ControlFlow;
+
 use rayon::prelude::*;
 
 use super::run::{Rooms, drawn, in_order, points};
@@ -60,7 +62,10 @@ pub(super) fn estimate(
         let designs = drawn(&plan.population, &sample, first);
         let each = designs.len() / model.nominal.len().max(1);
         let mut all = Vec::with_capacity(each * count);
-        model.each(&designs, |measures| all.extend_from_slice(measures));
+        model.each(&designs, |measures| {
+            all.extend_from_slice(measures);
+            ControlFlow::Continue(())
+        });
         (each, all)
     };
     let mut add = |(each, all): (usize, Vec<f64>)| (0..each).for_each(|i| verdicts.add(all.get(i * count..(i + 1) * count)));
@@ -89,14 +94,16 @@ impl Model<'_> {
         out.extend(self.values.iter().zip(self.jacobian.chunks_exact(n)).map(|(value, jacobian)| value + row(jacobian)));
     }
 
-    /// Hands the measures of designs, which are there one after the other, to `sink`.
-    fn each(&self, designs: &[f64], mut sink: impl FnMut(&[f64])) {
+    /// Hands the measures of designs, which are there one after the other, to `sink`, until that has seen enough.
+    fn each(&self, designs: &[f64], mut sink: impl FnMut(&[f64]) -> ControlFlow<()>) {
         let (mut values, mut measured) = (Vec::new(), Vec::new());
         self.rooms.with(|room| {
             for x in designs.chunks_exact(self.nominal.len().max(1)) {
                 self.extrapolate(x, &mut values);
                 self.evaluator.measure(x, &values, &mut measured, room);
-                sink(&measured);
+                if sink(&measured).is_break() {
+                    break;
+                }
             }
         });
     }
@@ -114,7 +121,7 @@ impl Model<'_> {
 
     /// The largest factor up to [`MOST_SCALE`] with the target yield: that of bisection, as if the yield fell with the factor.
     fn largest_scale(&self, variable: usize, designs: &[f64]) -> Option<f64> {
-        let good = |scale: f64| self.yield_at(variable, scale, designs) >= self.plan.target;
+        let good = |scale: f64| self.keeps_target(variable, scale, designs);
         if good(MOST_SCALE) {
             return Some(MOST_SCALE);
         }
@@ -133,14 +140,21 @@ impl Model<'_> {
         Some(low)
     }
 
-    /// The linear yield with the deviations of one variable from its mean scaled.
-    fn yield_at(&self, variable: usize, scale: f64, designs: &[f64]) -> f64 {
+    /// Whether the linear yield, with the deviations of one variable from its mean scaled, is the target's. The designs are counted until
+    /// the others cannot change the answer.
+    fn keeps_target(&self, variable: usize, scale: f64, designs: &[f64]) -> bool {
         let n = self.nominal.len().max(1);
         let mean = self.plan.population.marginals()[variable].mean();
-        let (measures, mut good) = (self.evaluator.measures(), 0_usize);
         let mut scaled = designs.to_vec();
         scaled.iter_mut().skip(variable).step_by(n).for_each(|x| *x = mean + scale * (*x - mean));
-        self.each(&scaled, |found| good += usize::from(measures.iter().zip(found).all(|(measure, value)| measure.met(*value))));
-        good as f64 / (designs.len() / n).max(1) as f64
+        let all = designs.len() / n;
+        let enough = |good: usize| good as f64 / all.max(1) as f64 >= self.plan.target;
+        let (measures, mut good, mut left) = (self.evaluator.measures(), 0, all);
+        self.each(&scaled, |found| {
+            good += usize::from(measures.iter().zip(found).all(|(measure, value)| measure.met(*value)));
+            left -= 1;
+            if enough(good) || !enough(good + left) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        enough(good)
     }
 }

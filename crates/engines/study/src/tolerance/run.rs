@@ -1,9 +1,11 @@
 //! Many designs on all threads, handed on in their order.
 
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Mutex, PoisonError};
 
-use rayon::prelude::*;
+use rayon::Yield;
 
 use super::{Plan, REPLICATES, Reason, ToleranceError};
 use crate::evaluator::{Evaluator, Workspace};
@@ -12,7 +14,7 @@ use crate::sampling::{Population, Replicates};
 /// Designs of a chunk: enough to fill the lanes of an evaluator that computes several at once. A multiple of the replicates, so that a
 /// study that is stopped between chunks has as many of each.
 const CHUNK: u64 = 64;
-/// Chunks handed on at once, per thread.
+/// Chunks begun before they are asked for, per thread.
 const AHEAD: usize = 4;
 
 /// Writes the points from a number on, as many as fit.
@@ -29,9 +31,6 @@ pub(super) fn points(plan: &Plan, count: u64) -> Result<Points<'static>, Toleran
     let replicates = Replicates::new(plan.population.len(), REPLICATES, plan.seed).map_err(ToleranceError::Points)?;
     Ok(Points { count, fill: Box::new(move |first, out| replicates.fill(first, out)) })
 }
-
-/// A design's values and measures (not a number where it has none), or why it has none.
-type Design<'a> = Result<(&'a [f64], &'a [f64]), &'a str>;
 
 /// Room of the threads: as many as were ever needed at once.
 pub(super) struct Rooms<'a> {
@@ -55,42 +54,52 @@ impl<'a> Rooms<'a> {
 
 /// A chunk of designs that was evaluated.
 #[derive(Default)]
-struct Chunk {
+pub(super) struct Chunk {
     values: Vec<f64>,
     measures: Vec<f64>,
     /// Per design: nothing, or why it has no values.
     failed: Vec<Option<String>>,
 }
 
-/// Draws and evaluates designs; hands each to `sink`, in order. Whether `watch`, which is told how many are done, let it come to its end.
+impl Chunk {
+    /// The values of every design that has some.
+    pub(super) fn values(&self) -> impl Iterator<Item = &[f64]> + Clone {
+        self.of_sound(&self.values)
+    }
+
+    /// The measures of the same designs; not a number where one has no value.
+    pub(super) fn measures(&self) -> impl Iterator<Item = &[f64]> + Clone {
+        self.of_sound(&self.measures)
+    }
+
+    fn of_sound<'a>(&self, all: &'a [f64]) -> impl Iterator<Item = &'a [f64]> + Clone + use<'a> {
+        let sound = self.failed.iter().filter(|failed| failed.is_none()).count();
+        let width = all.len() / sound.max(1);
+        (0..sound).map(move |i| &all[i * width..(i + 1) * width])
+    }
+
+    /// Every design: its measures, or why it has no values.
+    pub(super) fn designs(&self) -> impl Iterator<Item = Result<&[f64], &str>> {
+        let mut measures = self.measures();
+        self.failed.iter().map(move |failed| failed.as_deref().map_or_else(|| Ok(measures.next().unwrap_or_default()), Err))
+    }
+}
+
+/// Draws and evaluates designs; hands chunks of them to `sink`, in order. Whether `watch`, which is told how many are done, let it come
+/// to its end.
 pub(super) fn designs(
     evaluator: &dyn Evaluator,
     population: &Population,
     points: &Points<'_>,
     watch: &mut dyn FnMut(u64) -> bool,
-    sink: &mut dyn FnMut(Design<'_>),
+    sink: &mut dyn FnMut(Chunk),
 ) -> bool {
     let rooms = Rooms::new(evaluator);
     let chunk = |first: u64| rooms.with(|room| evaluated(evaluator, population, points, first, room));
-    in_order(points.count, watch, &chunk, &mut |chunk: Chunk| {
-        let (mut values, mut measures) = (&chunk.values[..], &chunk.measures[..]);
-        let count = evaluator.measures().len();
-        let each = chunk.failed.iter().filter(|f| f.is_none()).count().max(1);
-        let width = values.len() / each;
-        for failed in &chunk.failed {
-            if let Some(reason) = failed {
-                sink(Err(reason));
-                continue;
-            }
-            let (own, rest) = values.split_at(width);
-            let (measured, others) = measures.split_at(count);
-            (values, measures) = (rest, others);
-            sink(Ok((own, measured)));
-        }
-    })
+    in_order(points.count, watch, &chunk, sink)
 }
 
-/// Work in chunks on all threads, the results in order.
+/// Work in chunks on all threads, the results in order. While this thread takes in one, the others go on.
 pub(super) fn in_order<T: Send>(
     count: u64,
     watch: &mut dyn FnMut(u64) -> bool,
@@ -98,18 +107,50 @@ pub(super) fn in_order<T: Send>(
     sink: &mut dyn FnMut(T),
 ) -> bool {
     let chunks = count.div_ceil(CHUNK);
-    let together = (AHEAD * rayon::current_num_threads()) as u64;
-    let mut first = 0;
-    while first < chunks {
-        if !watch(first * CHUNK) {
-            return false;
+    let ahead = (AHEAD * rayon::current_num_threads()) as u64;
+    let (sender, receiver) = channel();
+    rayon::in_place_scope_fifo(|scope| {
+        let begin = |index: u64| {
+            let sender = sender.clone();
+            scope.spawn_fifo(move |_| {
+                // A panic goes on where the results are waited for, which would else be for ever. Nobody waits after a stop.
+                let found = catch_unwind(AssertUnwindSafe(|| chunk(index * CHUNK)));
+                let _ = sender.send((index, found));
+            });
+        };
+        (0..chunks.min(ahead)).for_each(begin);
+        let mut early = BTreeMap::new();
+        for next in 0..chunks {
+            if !watch(next * CHUNK) {
+                return false;
+            }
+            while !early.contains_key(&next) {
+                let Some((index, found)) = receive(&receiver) else { return false };
+                early.insert(index, found.unwrap_or_else(|panic| resume_unwind(panic)));
+            }
+            early.remove(&next).into_iter().for_each(&mut *sink);
+            if next + ahead < chunks {
+                begin(next + ahead);
+            }
         }
-        let last = chunks.min(first + together);
-        let found: Vec<T> = (first..last).into_par_iter().map(|i| chunk(i * CHUNK)).collect();
-        found.into_iter().for_each(&mut *sink);
-        first = last;
+        true
+    })
+}
+
+/// The next message. A thread of the pool works in the meantime, as there may be no other.
+fn receive<T>(receiver: &Receiver<T>) -> Option<T> {
+    loop {
+        match receiver.try_recv() {
+            Ok(found) => return Some(found),
+            Err(TryRecvError::Disconnected) => return None,
+            Err(TryRecvError::Empty) => {}
+        }
+        match rayon::yield_now() {
+            Some(Yield::Executed) => {}
+            Some(Yield::Idle) => std::thread::yield_now(),
+            None => return receiver.recv().ok(),
+        }
     }
-    true
 }
 
 /// The designs of the chunk that begins with `first`, one after the other.
@@ -129,19 +170,21 @@ fn evaluated(evaluator: &dyn Evaluator, population: &Population, points: &Points
     let mut chunk = Chunk::default();
     evaluator.evaluate_all(&all, room, &mut |_, found| match found {
         Ok(evaluation) => {
+            if chunk.values.is_empty() {
+                chunk.values.reserve_exact(all.len() / n * evaluation.values.len());
+            }
             chunk.values.extend_from_slice(&evaluation.values);
             chunk.failed.push(None);
         }
         Err(failure) => chunk.failed.push(Some(failure.reason.clone())),
     });
-    let sound = chunk.failed.iter().filter(|f| f.is_none()).count().max(1);
-    let mut values = chunk.values.chunks_exact((chunk.values.len() / sound).max(1));
-    let mut measured = Vec::with_capacity(evaluator.measures().len());
-    chunk.measures.reserve(sound * evaluator.measures().len());
-    for (x, _) in all.chunks_exact(n).zip(&chunk.failed).filter(|(_, failed)| failed.is_none()) {
-        evaluator.measure(x, values.next().unwrap_or_default(), &mut measured, room);
-        chunk.measures.extend_from_slice(&measured);
+    let sound = all.chunks_exact(n).zip(&chunk.failed).filter(|(_, failed)| failed.is_none());
+    let (mut measures, mut measured) = (Vec::new(), Vec::new());
+    for ((x, _), values) in sound.zip(chunk.values()) {
+        evaluator.measure(x, values, &mut measured, room);
+        measures.extend_from_slice(&measured);
     }
+    chunk.measures = measures;
     chunk
 }
 

@@ -97,12 +97,14 @@ pub(super) fn of_variance(
     let of_base = points.rows_per_base() * limiting.len();
     let mut rows: Vec<f64> = Vec::with_capacity(of_base);
     let all = Points { count: points.rows(plan.sensitivity_points), fill: Box::new(|first, out| points.fill(first, out)) };
-    let finished = designs(evaluator, &plan.population, &all, watch, &mut |design| {
-        let measures = design.map(|(_, measures)| measures).unwrap_or_default();
-        rows.extend(limiting.iter().map(|i| measures.get(*i).copied().unwrap_or(f64::NAN)));
-        if rows.len() >= of_base {
-            tally.record(&rows);
-            rows.clear();
+    let finished = designs(evaluator, &plan.population, &all, watch, &mut |chunk| {
+        for design in chunk.designs() {
+            let measures = design.unwrap_or_default();
+            rows.extend(limiting.iter().map(|i| measures.get(*i).copied().unwrap_or(f64::NAN)));
+            if rows.len() >= of_base {
+                tally.record(&rows);
+                rows.clear();
+            }
         }
     });
     let indices = |place: usize| tally.indices(place, plan.confidence).map(|indices| Share { measure: limiting[place], indices });

@@ -189,6 +189,32 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert!(one != format!("{:?}", run(&toy, &Plan { seed: 8, ..plan.clone() })));
 }
 
+/// Chunks come in order, however long each takes, and no more are begun than may wait.
+#[test]
+fn chunks_come_in_order() {
+    let (begun, mut seen) = (std::sync::atomic::AtomicU64::new(0), Vec::new());
+    let chunk = |first: u64| {
+        begun.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+        std::thread::sleep(std::time::Duration::from_micros(first * 7919 % 500));
+        first
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let mut add = |first: u64| {
+        assert!(begun.load(std::sync::atomic::Ordering::SeqCst) <= seen.len() as u64 + 3 * 4);
+        seen.push(first);
+    };
+    assert!(pool.install(|| run::in_order(64 * 99 + 1, &mut |_| true, &chunk, &mut add)));
+    assert!(seen == (0..100).map(|i| 64 * i).collect::<Vec<u64>>());
+}
+
+/// A panic of a thread is that of the study, which must not wait for its chunk for ever.
+#[test]
+#[should_panic(expected = "chunk 320")]
+fn a_panic_is_passed_on() {
+    let chunk = |first: u64| assert!(first != 320, "chunk {first}");
+    run::in_order(64 * 100, &mut |_| true, &chunk, &mut |()| {});
+}
+
 /// A study that is stopped keeps what was drawn, and says so.
 #[test]
 fn a_study_can_be_stopped() {

@@ -103,19 +103,19 @@ impl ForceCurve {
     pub fn longest_flat(&self, band: f64) -> Option<Interval> {
         let ratio = (1.0 + band) / (1.0 - band);
         // From knot to knot first: whatever is no longer than that is not looked at closely.
+        let mut reached = Vec::with_capacity(self.knots.len());
         let mut between_knots = 0.0_f64;
-        self.each_reach(ratio, |from, to| between_knots = between_knots.max(self.knots[to].at - self.knots[from].at));
-        let mut longest = Longest(None);
-        let mut before: Option<(usize, usize)> = None;
         self.each_reach(ratio, |from, to| {
-            if let Some((start, reached)) = before {
-                let bound = self.knots[(to + 1).min(self.stretches())].at - self.knots[start].at;
-                if bound >= between_knots.max(longest.length()) {
-                    self.longest_from(start, reached, ratio, &mut longest);
-                }
-            }
-            before = Some((from, to));
+            reached.push(to);
+            between_knots = between_knots.max(self.knots[to].at - self.knots[from].at);
         });
+        let mut longest = Longest(None);
+        for (start, pair) in reached.windows(2).enumerate() {
+            let bound = self.knots[(pair[1] + 1).min(self.stretches())].at - self.knots[start].at;
+            if bound >= between_knots.max(longest.length()) {
+                self.longest_from(start, pair[0], ratio, &mut longest);
+            }
+        }
         longest.0
     }
 

@@ -71,7 +71,7 @@ impl LaneNet {
     }
 
     /// End rotations and relative displacement of a beam.
-    #[inline]
+    #[inline(always)]
     pub(super) fn ends(&self, beam: usize, x: &[Lane]) -> ([Lane; 2], [Lane; 2]) {
         let mut motion = [Lane::ZERO; 4];
         for e in &self.plans[beam].motion {
@@ -88,7 +88,7 @@ impl LaneNet {
     }
 
     /// Adds a beam.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add<const M: usize, const Q: usize>(&mut self, beam: usize, condensed: &Condensed<M, Q>) {
         let plan = &self.plans[beam];
         for e in &plan.matrix {
@@ -103,6 +103,7 @@ impl LaneNet {
     }
 
     /// L·D·Lᵀ of the free block in place, without pivoting; Newton step, tangent, reaction and slope.
+    #[inline(always)]
     pub(super) fn solve(&mut self) {
         let n = self.unknowns;
         let free = n - 1;
@@ -154,7 +155,7 @@ impl LaneNet {
     }
 
     /// Weighted size of a change.
-    #[inline]
+    #[inline(always)]
     pub(super) fn size(&self, change: &[Lane]) -> Lane {
         change.iter().zip(&self.weights).fold(Lane::ZERO, |m, (c, w)| m.max(c.abs() * *w))
     }

@@ -114,7 +114,7 @@ impl<const M: usize, const E: usize> Sampling<M, E> {
     }
 
     /// dφ/du at a sampling point and at the one that mirrors it.
-    #[inline]
+    #[inline(always)]
     fn pair(row: &([Lane; M], [Lane; E]), at: &Unknowns<M>, beyond: &[Lane; E]) -> [Lane; 2] {
         let (mut even, mut odd) = (at.ends[1] - at.ends[0], Lane::ZERO);
         // The slope of bubble k is a polynomial of degree k + 1.
@@ -130,7 +130,7 @@ impl<const M: usize, const E: usize> Sampling<M, E> {
     }
 
     /// dφ/du at the start, in the middle and at the end.
-    #[inline]
+    #[inline(always)]
     pub(super) fn slopes(&self, at: &Unknowns<M>, beyond: &[Lane; E]) -> [Lane; 3] {
         let [first, last] = Self::pair(&self.slope[0], at, beyond);
         let [middle, _] = Self::pair(&self.slope[self.slope.len() - 1], at, beyond);
@@ -138,7 +138,7 @@ impl<const M: usize, const E: usize> Sampling<M, E> {
     }
 
     /// How fast the stress rises from both ends inwards, Pa; the axial part by a bound.
-    #[inline]
+    #[inline(always)]
     fn rises(&self, own: &StressModel, beam: &BeamState<M, E>) -> [Lane; 2] {
         let (mut even, mut odd) = (Lane::ZERO, Lane::ZERO);
         for k in 0..M + E {
@@ -160,6 +160,7 @@ impl<const M: usize, const E: usize> Sampling<M, E> {
     }
 
     /// Fills in what is known about the stress of all beams at a state. `angles` are the angles at rest of a beam of one design.
+    #[inline(always)]
     pub(super) fn survey(
         &mut self,
         stress: &[StressModel],
@@ -196,12 +197,15 @@ impl<const M: usize, const E: usize> Sampling<M, E> {
         }
     }
 
-    /// Samples the slope along a beam. Returns the largest stress at samples with a maximum next to them, the axial part by a bound.
-    #[inline]
+    /// Samples the slope along a beam, of which those at the ends and in the middle are known. Returns the largest stress at samples with
+    /// a maximum next to them, the axial part by a bound.
+    #[inline(always)]
     fn sample(&mut self, own: &StressModel, beam: &BeamState<M, E>) -> Lane {
         let last = self.samples.len() - 1;
-        for (i, row) in self.slope.iter().enumerate() {
-            let [left, right] = Self::pair(row, &beam.at, &beam.beyond);
+        let [first, middle, end] = beam.survey.slope.map(Lane::abs);
+        (self.samples[0], self.samples[last / 2], self.samples[last]) = (first, middle, end);
+        for i in 1..last / 2 {
+            let [left, right] = Self::pair(&self.slope[i], &beam.at, &beam.beyond);
             (self.samples[i], self.samples[last - i]) = (left.abs(), right.abs());
         }
         let zero = Lane::ZERO;
@@ -363,7 +367,7 @@ pub(super) struct Between<'a, const M: usize, const E: usize> {
 }
 
 impl<const M: usize, const E: usize> Between<'_, M, E> {
-    #[inline]
+    #[inline(always)]
     fn mix(&self, beam: usize, pick: impl Fn(&Survey) -> [Lane; 2]) -> Lane {
         let [left, right] = self.states.map(|s| pick(&s[beam].survey));
         let [[a, b], [c, d]] = self.weights;
@@ -371,6 +375,7 @@ impl<const M: usize, const E: usize> Between<'_, M, E> {
     }
 
     /// The largest stress, Pa, and its beam.
+    #[inline(always)]
     pub(super) fn peak(
         &self,
         sampling: &Sampling<M, E>,

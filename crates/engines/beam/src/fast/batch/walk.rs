@@ -5,7 +5,7 @@ use super::numbers::{BeamNumbers, Constants};
 use super::schedule::{Schedule, Weights};
 use super::stress::{BeamState, Between, Interval, Sampling};
 use crate::fast::kernel::{Condensed, Tables, Unknowns, condense};
-use crate::fast::lanes::{LANES, Lane};
+use crate::fast::lanes::{LANES, Lane, Vectors};
 use crate::fast::walk::STRESS_RATIO;
 use crate::network::Theory;
 
@@ -56,6 +56,7 @@ pub(super) struct Curves {
 /// Walks with `M` bubbles and `Q = M + E` points per beam.
 #[derive(Debug)]
 pub(super) struct LaneWalker<const M: usize, const Q: usize, const E: usize> {
+    vectors: Vectors,
     tables: Tables<M, Q, E>,
     sampling: Sampling<M, E>,
     constants: Constants<Q>,
@@ -74,6 +75,7 @@ pub(super) struct LaneWalker<const M: usize, const Q: usize, const E: usize> {
 impl<const M: usize, const Q: usize, const E: usize> LaneWalker<M, Q, E> {
     pub(super) fn new() -> Self {
         Self {
+            vectors: Vectors::new(),
             tables: Tables::new(),
             sampling: Sampling::new(),
             constants: Constants::default(),
@@ -172,6 +174,14 @@ impl<const M: usize, const Q: usize, const E: usize> LaneWalker<M, Q, E> {
     /// Linearises all beams at the current state, solves the network, and corrects the state.
     fn iterate(&mut self, net: &mut LaneNet) {
         self.linearise(net);
+        self.vectors.run(
+            #[inline(always)]
+            || self.correct(net),
+        );
+    }
+
+    #[inline(always)]
+    fn correct(&mut self, net: &LaneNet) {
         let (x, inner) = self.current.split_at_mut(net.unknowns);
         for (x, c) in x.iter_mut().zip(&net.change) {
             *x += *c;
@@ -186,6 +196,14 @@ impl<const M: usize, const Q: usize, const E: usize> LaneWalker<M, Q, E> {
     }
 
     fn linearise(&mut self, net: &mut LaneNet) {
+        self.vectors.run(
+            #[inline(always)]
+            || self.linearise_here(net),
+        );
+    }
+
+    #[inline(always)]
+    fn linearise_here(&mut self, net: &mut LaneNet) {
         net.clear();
         let (x, inner) = self.current.split_at(net.unknowns);
         for (b, (inner, condensed)) in inner.chunks_exact(M + 2).zip(&mut self.condensed).enumerate() {
@@ -202,6 +220,14 @@ impl<const M: usize, const Q: usize, const E: usize> LaneWalker<M, Q, E> {
 
     /// Stores the state and its derivative by the part of the travel.
     fn keep(&mut self, task: &Task, net: &LaneNet, index: usize) {
+        self.vectors.run(
+            #[inline(always)]
+            || self.keep_here(task, net, index),
+        );
+    }
+
+    #[inline(always)]
+    fn keep_here(&mut self, task: &Task, net: &LaneNet, index: usize) {
         let scale = Lane::splat(task.travel_m) / (self.constants.length_m * task.projection);
         let state = &mut self.states[index];
         state.force = net.reaction * (1.0 / task.projection);
@@ -226,6 +252,14 @@ impl<const M: usize, const Q: usize, const E: usize> LaneWalker<M, Q, E> {
 
     /// Force, slope and stress at the stations.
     fn emit(&self, task: &Task, interval: &mut Interval, out: &mut Curves) {
+        self.vectors.run(
+            #[inline(always)]
+            || self.emit_here(task, interval, out),
+        );
+    }
+
+    #[inline(always)]
+    fn emit_here(&self, task: &Task, interval: &mut Interval, out: &mut Curves) {
         out.force_n.clear();
         out.stiffness_n_per_m.clear();
         out.stress_pa.clear();
@@ -248,7 +282,7 @@ impl<const M: usize, const Q: usize, const E: usize> LaneWalker<M, Q, E> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn force(&self, weights: &Weights) -> Lane {
         let term = |(i, [value, slope]): &(usize, [f64; 2])| self.states[*i].force * *value + self.states[*i].slope * *slope;
         weights.states.iter().fold(Lane::ZERO, |sum, w| sum + term(w))
@@ -352,7 +386,7 @@ impl<const M: usize, const Q: usize, const E: usize> LaneWalker<M, Q, E> {
 }
 
 /// Unknowns of a beam from its end rotations and its part of the state.
-#[inline]
+#[inline(always)]
 fn unpack<const M: usize>(ends: [Lane; 2], inner: &[Lane]) -> Unknowns<M> {
     Unknowns { ends, force: [inner[0], inner[1]], bubbles: std::array::from_fn(|k| inner[2 + k]) }
 }

@@ -43,15 +43,16 @@ impl Default for Quantiles {
 }
 
 impl Quantiles {
+    #[inline]
     pub(super) fn add(&mut self, value: f64) {
         match self {
-            Self::Values(values) if values.len() < Fan::EXACT => values.push(value),
+            Self::Bins(bins) => bins.add(value),
             Self::Values(values) => {
                 values.push(value);
-                let bins = Bins::of(values);
-                *self = Self::Bins(bins);
+                if values.len() > Fan::EXACT {
+                    *self = Self::Bins(Bins::of(values));
+                }
             }
-            Self::Bins(bins) => bins.add(value),
         }
     }
 
@@ -104,13 +105,19 @@ impl Bins {
         bins
     }
 
+    #[inline]
     fn add(&mut self, value: f64) {
         // Nearly every value falls between those before.
         let bin = floor(value * self.per_width);
         if self.first <= bin && bin <= self.last {
             self.counts[slot(bin)] += 1;
-            return;
+        } else {
+            self.add_outside(value);
         }
+    }
+
+    /// The same for a value beyond those before.
+    fn add_outside(&mut self, value: f64) {
         while !fits(value.min(self.first as f64 * self.width), value.max(self.last as f64 * self.width), self.width) {
             self.widen();
         }
@@ -146,8 +153,10 @@ impl Bins {
 }
 
 /// Where a bin is kept.
+#[inline]
 fn slot(bin: i64) -> usize {
-    bin.rem_euclid(BINS as i64) as usize
+    const { assert!(BINS.is_power_of_two()) };
+    bin as usize & (BINS - 1)
 }
 
 /// The number of the bin that holds a value: whole.
@@ -156,6 +165,7 @@ fn number(value: f64, width: f64) -> f64 {
 }
 
 /// The largest whole number not above a value; the nearest that there is, beyond 2^63.
+#[inline]
 fn floor(value: f64) -> i64 {
     let towards_zero = value as i64;
     if towards_zero as f64 > value { towards_zero.saturating_sub(1) } else { towards_zero }

@@ -53,6 +53,26 @@ fn a_fan_of_normal_curves() {
     }
 }
 
+/// Curves of any length, with values that are none, station by station or one after the other: the same bits, before and after the values
+/// themselves are given up.
+#[test]
+fn many_curves_at_once_are_as_one_after_the_other() {
+    let (stations, scores) = (21, scores(30 * 5000));
+    let curve = |i: usize| {
+        let mut curve = scores[30 * i..30 * i + i % 30].to_vec();
+        curve.iter_mut().skip(i % 7).step_by(11).for_each(|v| *v = f64::NAN);
+        curve
+    };
+    let curves: Vec<Vec<f64>> = (0..5000).map(curve).collect();
+    let (mut one, mut all) = (Fan::new(stations), Fan::new(stations));
+    curves.iter().for_each(|c| one.add(c));
+    for part in curves.chunks(999) {
+        all.add_all(part.iter().map(Vec::as_slice));
+    }
+    assert_eq!(format!("{one:?}"), format!("{all:?}"));
+    assert!(all.curves() == 5000 && all.quantile_error(0) > 0.0 && all.quantile_error(20) == 0.0 && all.station(20).missing > 0);
+}
+
 /// The bins depend on the values only: any order gives the same bits. And they keep the promised bound, far from zero, too.
 #[test]
 fn quantiles_do_not_depend_on_the_order() {
