@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 use serde_json::json;
 
 use crate::Workspace;
+use crate::python::python_name;
 use crate::step::{Outcome, Steps, output_of};
-use crate::test::{Solved, emptied, python_name, run_script};
+use crate::test::{Solved, emptied, run_script};
 
 const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
 const MAC: &str = "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome";

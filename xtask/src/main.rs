@@ -10,6 +10,8 @@ mod generate;
 mod layers;
 mod lint;
 mod metadata;
+mod parts;
+mod python;
 mod source;
 mod step;
 mod test;
@@ -28,9 +30,10 @@ Commands:
   layers [--markdown]  dependencies point down only; --markdown prints the table and graph of the crates
   generate [--check]   write what is generated: schema, reference pages, validation table, picture, crate graph
                        --check only compares, and names what is stale
-  test [--rust] [--examples] [--browser]
+  test [--rust] [--parts] [--examples] [--browser]
                        everything a fresh machine with Rust and Python 3 can run; with options only the Rust tests,
-                       only the examples as Python reads them, only their reports in a browser
+                       only files of parts or only the examples as Python reads them, only their reports in a browser
+  validate             read files of parts with a CAD kernel (OpenCASCADE, some hundred megabytes, installed if possible)
   fuzz [seconds]       feed noise to the reader of project files (60 s by default); needs cargo-fuzz
   help                 this text
 
@@ -103,10 +106,19 @@ fn run(args: &[String]) -> Result<ExitCode, String> {
             Ok(generate::run(&workspace, options.has("--check"), options.binary.as_deref()))
         }
         "test" => {
-            let options = Options::parse(rest, &["--rust", "--examples", "--browser"], true, 0)?;
+            let options = Options::parse(rest, &["--rust", "--parts", "--examples", "--browser"], true, 0)?;
             let wanted = |flag: &str| options.flags.is_empty() || options.has(flag);
-            let what = test::What { rust: wanted("--rust"), examples: wanted("--examples"), browser: wanted("--browser") };
+            let what = test::What {
+                rust: wanted("--rust"),
+                parts: wanted("--parts"),
+                examples: wanted("--examples"),
+                browser: wanted("--browser"),
+            };
             Ok(test::run(&workspace, what, options.binary.as_deref()))
+        }
+        "validate" => {
+            Options::parse(rest, &[], false, 0)?;
+            Ok(parts::validate(&workspace))
         }
         "fuzz" => {
             let options = Options::parse(rest, &[], false, 1)?;

@@ -12,15 +12,20 @@ use crate::browser;
 use crate::examples::{self, Example};
 use crate::generate::{built, forcewright};
 use crate::metadata::{self, cargo};
+use crate::parts;
+use crate::python::TOOLS;
 use crate::step::{Finished, Outcome, Steps, captured, output_of, visible};
 
 /// Which tests to run.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::struct_excessive_bools, reason = "one for each option of the command")]
 pub(crate) struct What {
     /// `cargo test`.
     pub(crate) rust: bool,
     /// Examples and what other tools read of their results.
     pub(crate) examples: bool,
+    /// Files of parts and what other tools read of them.
+    pub(crate) parts: bool,
     /// The report in a browser.
     pub(crate) browser: bool,
 }
@@ -46,6 +51,9 @@ pub(crate) fn run(workspace: &Workspace, what: What, binary: Option<&Path>) -> E
     let mut steps = Steps::default();
     if what.rust {
         steps.run("cargo test", || visible(cargo(workspace).args(["test", "--workspace"])));
+    }
+    if what.parts {
+        parts::run(workspace, &mut steps);
     }
     if what.examples || what.browser {
         run_program(workspace, what, binary, &mut steps);
@@ -104,17 +112,7 @@ impl Bench<'_> {
 
     /// Reads schema, examples and results with tools that know nothing of this project.
     fn check_with_python(&self, solved: &[Solved], steps: &mut Steps) {
-        let start = Instant::now();
-        let (python, reason) = match self.virtual_environment() {
-            Ok(python) => {
-                steps.record("python: environment with jsonschema", Outcome::Passed, start.elapsed());
-                (python, None)
-            }
-            Err(reason) => {
-                steps.record("python: environment with jsonschema", Outcome::NotRun(reason), start.elapsed());
-                (PathBuf::from(python_name()), Some("no environment with jsonschema"))
-            }
-        };
+        let (python, reason) = TOOLS.python(self.workspace, &self.folder, steps);
         let schemas = match self.schemas(solved) {
             Ok(schemas) => schemas,
             Err(error) => {
@@ -127,26 +125,6 @@ impl Bench<'_> {
         let mut command = Command::new(python);
         command.current_dir(&self.workspace.root).arg("xtask/python/examples.py");
         run_script(&mut command, &self.folder.join("examples.json"), &job, "python", Duration::from_mins(10), steps);
-    }
-
-    /// A Python with the pinned packages, made once and made anew when the pins change.
-    fn virtual_environment(&self) -> Result<PathBuf, String> {
-        let requirements = self.workspace.root.join("xtask/python/requirements.txt");
-        let pins = std::fs::read_to_string(&requirements).map_err(|error| format!("{}: {error}", requirements.display()))?;
-        let folder = self.folder.join("venv");
-        let python = if cfg!(windows) { folder.join("Scripts/python.exe") } else { folder.join("bin/python") };
-        let done = folder.join("installed.txt");
-        if python.exists() && std::fs::read_to_string(&done).is_ok_and(|installed| installed == pins) {
-            return Ok(python);
-        }
-        emptied(&folder)?;
-        let limit = Duration::from_mins(5);
-        let cannot = |error: String| format!("jsonschema could not be installed\n{error}");
-        output_of(Command::new(python_name()).args(["-m", "venv"]).arg(&folder), limit).map_err(cannot)?;
-        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input", "--requirement"];
-        output_of(Command::new(&python).args(pip).arg(&requirements), limit).map_err(cannot)?;
-        std::fs::write(&done, pins).map_err(|error| format!("{}: {error}", done.display()))?;
-        Ok(python)
     }
 
     /// Schema files of all families that the examples show.
@@ -169,11 +147,6 @@ impl Bench<'_> {
         }
         Ok(Value::Object(files))
     }
-}
-
-/// The name under which Python 3 is found.
-pub(crate) fn python_name() -> &'static str {
-    if cfg!(windows) { "python" } else { "python3" }
 }
 
 fn ending(finished: Result<Finished, String>, expected: i32) -> Outcome {

@@ -1,1 +1,78 @@
-//! Files for making parts.
+//! Files for making parts: what laser cutters, CAD programs and printers read.
+//!
+//! [`write()`] turns a [`Part`] into the bytes of a file. It is a pure function: no clock, no files, the same bytes every time and on every
+//! machine. All files are in millimetres, with the origin and the axes of the part; the plate fills `0 ≤ z ≤ depth`.
+//!
+//! | format | lines, arcs, holes | splines | holds besides |
+//! | --- | --- | --- | --- |
+//! | [`Format::Dxf`], AC1015 | exact: closed polylines with bulges, circles | arcs with common tangents, within [`Options::arc_error_m`] | layers OUTLINE, CUTOUTS, HOLES; texts on NOTES |
+//! | [`Format::Svg`], true size | exact: arcs, circles | exact: cubic Béziers | title and description |
+//! | [`Format::Step`], AP214 | exact: planes, cylinders | exact: extruded B-splines | one closed solid, product name |
+//! | [`Format::Stl`], binary | chords within [`Options::facet_error_m`] | the same | nothing |
+//! | [`Format::ThreeMf`] | chords within [`Options::facet_error_m`] | the same | unit, title |
+//!
+//! Exact means to the digits written: 10⁻¹² mm. Corners of the two meshes lie on the boundary, rounded to single precision, which is
+//! what STL holds; both formats hold the same closed mesh.
+//!
+//! A part is checked before anything is written ([`Error`]): boundaries that are open, run the wrong way, cross or touch each other, or
+//! lie outside the outline make no part.
+
+mod cap;
+mod dxf;
+mod error;
+mod format;
+mod geometry;
+mod mesh;
+mod shape;
+mod step;
+mod stl;
+mod svg;
+mod text;
+mod three_mf;
+mod zip;
+
+pub use error::{Boundary, Error, Place, Problem};
+pub use format::{Format, UnknownFormat};
+
+use forcewright_model::Part;
+
+/// How closely curves are followed where a format cannot hold them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Largest distance between a spline and the arcs that stand for it in DXF, m; 10⁻⁹ to 10⁻².
+    pub arc_error_m: f64,
+    /// Largest distance between a curve and the chords that stand for it in STL and 3MF, m; 10⁻⁹ to 10⁻².
+    pub facet_error_m: f64,
+}
+
+impl Default for Options {
+    /// Arcs within 0.001 mm, facets within 0.005 mm.
+    fn default() -> Self {
+        Self { arc_error_m: 1e-6, facet_error_m: 5e-6 }
+    }
+}
+
+/// The bytes of a file that describes the part.
+///
+/// # Errors
+/// When the part is none that could be made, or an option is out of its range: what is wrong, and where.
+pub fn write(part: &Part, format: Format, options: &Options) -> Result<Vec<u8>, Error> {
+    let allowed = 1e-9..=1e-2;
+    for (name, error_m) in [("arc_error_m", options.arc_error_m), ("facet_error_m", options.facet_error_m)] {
+        if !allowed.contains(&error_m) {
+            return Err(Error { place: Place::Options, problem: Problem::Option { name, value: error_m } });
+        }
+    }
+    let shape = shape::Shape::new(part)?;
+    if matches!(format, Format::Stl | Format::ThreeMf) {
+        let mesh = mesh::extruded(&shape, options.facet_error_m * shape::MM_PER_M)?;
+        return Ok(if format == Format::Stl { stl::write(part, &mesh) } else { three_mf::write(part, &mesh) });
+    }
+    cap::check(&shape)?;
+    let text = match format {
+        Format::Dxf => dxf::write(part, &shape, options.arc_error_m * shape::MM_PER_M),
+        Format::Svg => svg::write(part, &shape),
+        _ => step::write(part, &shape),
+    };
+    Ok(text.into_bytes())
+}

@@ -1,0 +1,37 @@
+//! Writes sample parts in all formats, and `samples.json` with what is known of them, to the folder given (or the current one).
+
+use std::path::Path;
+use std::{env, fs, io};
+
+use forcewright_fabricate::{Format, Options, write};
+use serde_json::json;
+
+#[path = "../tests/common/mod.rs"]
+#[allow(dead_code, unreachable_pub, missing_docs, reason = "shared with the tests, which use all of it")]
+mod common;
+
+fn main() -> io::Result<()> {
+    let folder = env::args().nth(1).unwrap_or_else(|| ".".to_owned());
+    let folder = Path::new(&folder);
+    let options = Options::default();
+    let mut known = Vec::new();
+    for common::Sample { part, area_m2, boundary_m, faces } in common::samples() {
+        for format in Format::ALL {
+            let bytes = write(&part, format, &options).map_err(io::Error::other)?;
+            fs::write(folder.join(format!("{}.{}", part.name, format.extension())), bytes)?;
+        }
+        known.push(json!({
+            "name": part.name,
+            "title": part.title,
+            "area_mm2": area_m2 * 1e6,
+            "boundary_mm": boundary_m * 1e3,
+            "depth_mm": part.depth_m * 1e3,
+            "faces": faces,
+            "cutouts": part.cutouts.len(),
+            "holes": part.holes.iter().map(|hole| hole.diameter_m * 1e3).collect::<Vec<_>>(),
+            "arc_error_mm": options.arc_error_m * 1e3,
+            "facet_error_mm": options.facet_error_m * 1e3,
+        }));
+    }
+    fs::write(folder.join("samples.json"), format!("{:#}\n", json!(known)))
+}

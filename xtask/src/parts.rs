@@ -1,0 +1,71 @@
+//! Files of parts, written by an example and read by programs that know nothing of this project.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::time::Duration;
+
+use serde_json::json;
+
+use crate::Workspace;
+use crate::metadata::{self, cargo};
+use crate::python::{CAD, TOOLS};
+use crate::step::{Outcome, Steps, visible};
+use crate::test::{emptied, run_script};
+
+/// Drawings and meshes, for the command `test`.
+pub(crate) fn run(workspace: &Workspace, steps: &mut Steps) {
+    let Some((folder, samples)) = samples(workspace, steps) else { return };
+    let (python, reason) = TOOLS.python(workspace, &folder, steps);
+    let mut command = Command::new(python);
+    command.current_dir(&workspace.root).arg("xtask/python/parts.py");
+    let job = json!({ "folder": samples, "without_packages": reason });
+    run_script(&mut command, &folder.join("parts.json"), &job, "parts", Duration::from_mins(5), steps);
+}
+
+/// Solids in a CAD kernel: the command `validate`.
+pub(crate) fn validate(workspace: &Workspace) -> ExitCode {
+    let mut steps = Steps::default();
+    if let Some((folder, samples)) = samples(workspace, &mut steps) {
+        let (python, reason) = CAD.python(workspace, &folder, &mut steps);
+        if let Some(reason) = reason {
+            steps.run("solids", || Outcome::NotRun(reason));
+        } else {
+            let mut command = Command::new(python);
+            command.current_dir(&workspace.root).arg("xtask/python/solids.py");
+            run_script(
+                &mut command,
+                &folder.join("solids.json"),
+                &json!({ "folder": samples }),
+                "solids",
+                Duration::from_mins(10),
+                &mut steps,
+            );
+        }
+    }
+    let code = steps.summary("validate");
+    println!("\n{}", steps.closing_line());
+    code
+}
+
+/// Writes the samples. Gives the folder of the tasks, and that of the samples in it.
+fn samples(workspace: &Workspace, steps: &mut Steps) -> Option<(PathBuf, PathBuf)> {
+    let mut folders = None;
+    steps.run("write sample parts", || {
+        let made = metadata::read(workspace).and_then(|metadata| {
+            let folder = metadata.target.join("xtask");
+            let samples = folder.join("parts");
+            emptied(&samples).map(|()| (folder, samples))
+        });
+        match made {
+            Ok((folder, samples)) => {
+                let outcome = visible(cargo(workspace).args(EXAMPLE).arg::<&Path>(&samples));
+                folders = (outcome == Outcome::Passed).then_some((folder, samples));
+                outcome
+            }
+            Err(error) => Outcome::Failed(error),
+        }
+    });
+    folders
+}
+
+const EXAMPLE: [&str; 6] = ["run", "--package", "forcewright-fabricate", "--example", "samples", "--"];
