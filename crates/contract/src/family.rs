@@ -20,9 +20,9 @@ pub type Progress<'a> = &'a mut dyn FnMut(f64) -> bool;
 /// A family, for the people who write one.
 pub trait Mechanism: Sync + 'static {
     /// The project file as typed: slots with units, places and origins.
-    type Spec: Describe + Default;
+    type Spec: Describe + Default + Sync;
     /// The same resolved: plain SI numbers, references checked, catalogue values in place.
-    type Design;
+    type Design: Sync;
 
     /// Name in project files: `compliant`.
     const ID: &'static str;
@@ -125,7 +125,7 @@ pub trait Family: Sync {
 }
 
 /// A project that was understood: ready to be solved.
-pub trait Understood {
+pub trait Understood: Sync {
     /// Analyses it.
     fn analyse(&self, progress: Progress<'_>) -> Analysis;
     /// Its parameters as typed.

@@ -12,6 +12,8 @@ use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use rayon::prelude::*;
+
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::units::Unit;
 use forcewright_contract::edit::{self, EditError};
@@ -22,12 +24,18 @@ use forcewright_study::evaluator::Variable;
 use forcewright_study::optimise::{Progress, Reserve, Run, Search, Settings, again, search};
 use forcewright_study::task::{Limit, Task};
 
+use crate::sweep::Snapshot;
 use crate::{Loaded, Refused};
 
 /// Rounds in which limits are tightened where the full analysis finds them missed by what the search does not see.
 const ROUNDS: usize = 8;
 /// By how much, relative to what was missed.
 const TIGHTER: f64 = 1.25;
+/// By how much more in each round than in the one before: between stations a limit gives way by less than it is moved.
+const HARDER: f64 = 2.0;
+/// A round must leave at most this part of what is missed; after so many in a row that do not, a design is given up.
+const NEARER: f64 = 0.7;
+const MOST_IN_VAIN: usize = 2;
 /// The least by which a limit moves, relative to its scale, and a band, relative to its level: beyond what a search leaves open.
 const LEAST_MOVE: f64 = 3e-6;
 /// A requirement missed by more than this part of itself is not the doing of its own limit but of a band that was left between stations.
@@ -43,6 +51,8 @@ const NEARLY_KEPT: f64 = 1e-4;
 
 /// Basins whose best is analysed in full, until one meets all requirements.
 const MOST_BASINS: usize = 8;
+/// The least by which the goal of a search must promise to be better than what was kept, relative to that.
+const PROMISING: f64 = 1e-3;
 /// Times that the scatter is looked at, and the change of what it takes, relative to the most, below which limits are at rest.
 const MOST_LOOKS: usize = 8;
 const AT_REST: f64 = 0.02;
@@ -107,7 +117,7 @@ impl Files for Changed<'_> {
 }
 
 /// Moves the limits that the full analysis found missed inwards, by a little more than that.
-fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate) {
+fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate, tighter: f64) {
     let count = task.evaluator.outputs().iter().map(|o| o.values.end).max().unwrap_or(0);
     reserve.limits.resize(count, 0.0);
     reserve.bands.resize(count, 0.0);
@@ -121,11 +131,11 @@ fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate) {
         let missed = |limit: &Limit| relative.map_or(by, |part| part * size(limit));
         let own: Vec<&Limit> = task.limits.iter().filter(|limit| limit.checks.contains(&check.name.as_str())).collect();
         for limit in own.iter().filter(|limit| missed(limit) <= BEYOND * limit.scale) {
-            reserve.limits[limit.values.clone()].iter_mut().for_each(|r| *r += TIGHTER * missed(limit) + LEAST_MOVE * limit.scale);
+            reserve.limits[limit.values.clone()].iter_mut().for_each(|r| *r += tighter * missed(limit) + LEAST_MOVE * limit.scale);
         }
         // The band's own check says by how much it is too wide; a stroke far too short, that it is.
         if check.name == "force" && by <= BEYOND {
-            narrower = narrower.max(TIGHTER * by + LEAST_MOVE);
+            narrower = narrower.max(tighter * by + LEAST_MOVE);
         } else if check.name == "force" || own.iter().any(|limit| missed(limit) > BEYOND * limit.scale) {
             narrower = narrower.max(NARROWER);
         }
@@ -277,7 +287,9 @@ impl Loaded {
         let variables = task.evaluator.variables().to_vec();
         let nominal: Vec<f64> = variables.iter().map(|v| v.nominal).collect();
         // What cannot be written is refused before the work, not after.
-        self.with_design(files, target, &task.evaluator.numbers(&nominal))?;
+        let (possible, files) = Snapshot::of(files, |files| self.with_design(files, target, &task.evaluator.numbers(&nominal)));
+        possible?;
+        let files = &files;
         let before = self.solve(&self.name(), "", &mut |_| true);
         let wording = self.wording(&task, Some(&before));
         let stopped = AtomicBool::new(false);
@@ -291,17 +303,9 @@ impl Loaded {
         let mut order: Vec<usize> = found.basins.iter().map(|b| b.best).collect();
         order.truncate(MOST_BASINS);
         order.extend(found.best.filter(|best| !order.contains(best)));
-        let mut kept: Option<Candidate> = None;
-        for run in order.into_iter().map(|i| &found.runs[i]).filter(|run| !run.goal.is_nan()) {
-            // One that meets all is beaten by none whose search promised less.
-            if kept.as_ref().is_some_and(|k| k.met() && k.goal <= run.goal) || kept.is_some() && stopped.load(Ordering::Relaxed) {
-                break;
-            }
-            let next = self.kept((files, target), (&task, &settings), run.clone(), &go_on, &stopped)?;
-            if kept.as_ref().is_none_or(|k| next.beats(k)) {
-                kept = Some(next);
-            }
-        }
+        order.retain(|i| !found.runs[*i].goal.is_nan());
+        let judge = |run: &usize| self.kept((files, target), (&task, &settings), found.runs[*run].clone(), &go_on, &stopped);
+        let mut kept = best_of(&order, &found.runs, &stopped, &judge)?;
         let mut robustness = None;
         if let Some((found, robust)) = kept.take_if(|_| robust.is_some()).zip(robust) {
             let (found, looked) = self.hardened((files, target), (&task, &settings), (found, robust), &go_on, &stopped)?;
@@ -328,7 +332,7 @@ impl Loaded {
         })
     }
 
-    /// The best run as a file; where the full analysis misses a requirement, that of a run further inside the limits which meets all.
+    /// A run as a file; where the full analysis misses a requirement, that of a run further inside the limits which meets all.
     /// Where none does, the one that misses least.
     fn kept(
         &self,
@@ -346,21 +350,25 @@ impl Loaded {
         settings.nlp.feasibility = settings.nlp.feasibility.min(CLOSELY_KEPT);
         let mut last = candidate(run, &settings.reserve)?;
         let mut best = last.clone();
+        let (mut tighter, mut vain) = (TIGHTER, 0);
         for _ in 1..ROUNDS {
-            let done = best.met() && !best.fell();
+            let done = best.met() && !best.fell() || vain >= MOST_IN_VAIN;
             if done || stopped.load(Ordering::Relaxed) || !last.run.feasible(NEARLY_KEPT) {
                 break;
             }
-            tighten(&mut settings.reserve, task, &last);
+            tighten(&mut settings.reserve, task, &last, tighter);
+            tighter *= HARDER;
             let mut next = again(task, &settings, &last.run, go_on);
             if next.goal.is_nan() {
                 break;
             }
             next.history.splice(0..0, last.run.history);
             last = candidate(next, &settings.reserve)?;
+            let nearer = last.met() || shortfall(&last.report) <= NEARER * shortfall(&best.report);
             if last.beats(&best) {
                 best = last.clone();
             }
+            vain = if nearer { 0 } else { vain + 1 };
         }
         Ok(best)
     }
@@ -439,6 +447,37 @@ impl Loaded {
             None => Ok(text),
         }
     }
+}
+
+/// The best of what runs lead to, looked at in their order. As many at a time as there are threads; what the order would not have come to
+/// is thrown away, so that their number changes nothing.
+fn best_of(
+    order: &[usize],
+    runs: &[Run],
+    stopped: &AtomicBool,
+    judge: &(dyn Fn(&usize) -> Result<Candidate, Refused> + Sync),
+) -> Result<Option<Candidate>, Refused> {
+    let mut kept: Option<Candidate> = None;
+    // One that meets all is beaten by none whose search promised hardly more: what the full analysis finds costs the rest.
+    let enough = |kept: &Option<Candidate>, run: usize| {
+        kept.as_ref().is_some_and(|k| k.met() && k.goal <= runs[run].goal + PROMISING * k.goal.abs() || stopped.load(Ordering::Relaxed))
+    };
+    for some in order.chunks(rayon::current_num_threads()) {
+        if enough(&kept, some[0]) {
+            break;
+        }
+        let judged: Vec<Result<Candidate, Refused>> = some.par_iter().map(judge).collect();
+        for (run, next) in some.iter().zip(judged) {
+            if enough(&kept, *run) {
+                break;
+            }
+            let next = next?;
+            if kept.as_ref().is_none_or(|k| next.beats(k)) {
+                kept = Some(next);
+            }
+        }
+    }
+    Ok(kept)
 }
 
 /// The limits that were moved inwards, each with the largest move, SI, and its unit.

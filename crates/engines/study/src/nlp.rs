@@ -37,10 +37,10 @@
 //! - *Scaling*: variables by their range, objective and constraints by their gradients at the start, so that units do not matter.
 //! - *Curvature*: one dense matrix for the Lagrangian, damped BFGS (`powell1978`); it stays positive definite, which a vertex, an
 //!   objective linear in some variable or a Lagrangian of negative curvature would not grant an exact Hessian.
-//! - *Quadratic programme*: the active set of the last one, mended and checked, otherwise the interior-point method Clarabel
-//!   (`goulart2024`) on the rows near their bounds and those that its answer violates, then taken to working precision by the
-//!   equations of the active set it points at. Hence optimality is reached to 1e-10 and better although an interior-point method
-//!   alone would not give it, and near the end a programme costs one small linear system.
+//! - *Quadratic programme*: the active set of the last one, mended and checked, otherwise the dual active-set method of Goldfarb and
+//!   Idnani (`goldfarb1983`), in elastic mode with multipliers that end at the price; where rounding defeats that, the interior-point
+//!   method Clarabel (`goulart2024`). What either finds is taken to working precision by the equations of the active set it points at.
+//!   Hence optimality is reached to 1e-10 and better, and near the end a programme costs one small linear system.
 //! - *Globalisation*: a step is taken if the merit function, whose penalties follow the multipliers, falls below the worst of the last few
 //!   points (L. Grippo, F. Lampariello and S. Lucidi 1986). Where the whole step fails a correction of second order is tried first
 //!   (N. Maratos's effect; `nocedal2006`, sections 15.5, 15.6 and 18.3), then the programme is solved again within a shorter reach: with
@@ -59,6 +59,7 @@
 //! Everything is deterministic: no clock, no threads, no random numbers.
 
 mod active;
+mod dual;
 mod hessian;
 mod interior;
 mod kkt;

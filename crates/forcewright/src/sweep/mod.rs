@@ -139,9 +139,7 @@ impl Sweep {
         metrics: &[String],
         stop: &AtomicBool,
     ) -> Result<Self, SweepError> {
-        let recorder = Recorder { files, read: RefCell::default() };
-        let base = Project::load(&recorder, path, choices);
-        let files = Snapshot(recorder.read.into_inner());
+        let (base, files) = Snapshot::of(files, |files| Project::load(files, path, choices));
         let mut sweep = Self {
             files,
             path: path.to_owned(),
@@ -331,8 +329,17 @@ impl Sweep {
     }
 }
 
-/// Files as they were when the sweep began: editing them meanwhile does not mix two projects in one table.
-struct Snapshot(BTreeMap<PathBuf, Result<String, FileError>>);
+/// Files as they were at the beginning: editing them meanwhile does not mix two projects in one table, or in one search.
+pub(crate) struct Snapshot(BTreeMap<PathBuf, Result<String, FileError>>);
+
+impl Snapshot {
+    /// What some work reads.
+    pub(crate) fn of<T>(files: &dyn Files, work: impl FnOnce(&dyn Files) -> T) -> (T, Self) {
+        let recorder = Recorder { files, read: RefCell::default() };
+        let done = work(&recorder);
+        (done, Self(recorder.read.into_inner()))
+    }
+}
 
 impl Files for Snapshot {
     fn read(&self, path: &Path) -> Result<String, FileError> {

@@ -28,6 +28,8 @@ const CLOSER: f64 = 0.03;
 const SHARP: f64 = 0.5;
 /// Part of that from which a state is refined if others are.
 const NEARLY_ROUGH: f64 = 0.25;
+/// An error of the polynomial degree beyond so many times what is allowed is not one of the states that were looked at.
+const UNRESOLVED: f64 = 2.0;
 const MOST_STEPS: usize = 400;
 /// Largest start of the last iteration per accuracy of the force, as the tangent is right to that only.
 const TANGENT: f64 = 2.0;
@@ -154,7 +156,7 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
         task: &Task,
         counters: &mut Counters,
         out: &mut Response,
-        finer: Option<&mut Walker<N, R, D>>,
+        mut finer: Option<&mut Walker<N, R, D>>,
         gradient: Option<&mut ForceGradient>,
     ) -> Result<(), GiveUp> {
         if !self.prepare(task) {
@@ -176,7 +178,18 @@ impl<const M: usize, const Q: usize, const E: usize> Walker<M, Q, E> {
             let part = if round == 0 { 1.0 } else { SHARP };
             let allowed = [part * task.accuracy * largest[0], part * STRESS_RATIO * task.accuracy * largest[1]];
             interpolation = self.interpolation_error(task, allowed);
-            if self.rough.is_empty() || round == MOST_ROUNDS || !self.refine(task, counters)? {
+            if self.rough.is_empty() || round == MOST_ROUNDS {
+                break;
+            }
+            // States that a higher degree will not keep are not worth others between them.
+            if let (0, Some(finer)) = (round, finer.as_deref_mut()) {
+                let resolution = self.resolution_error(task, counters, finer)?;
+                let far = |i: usize, ratio: f64| resolution[i] > UNRESOLVED * ratio * task.accuracy * largest[i];
+                if far(0, 1.0) || far(1, STRESS_RATIO) {
+                    return Err(GiveUp::Unresolved);
+                }
+            }
+            if !self.refine(task, counters)? {
                 break;
             }
         }

@@ -133,11 +133,11 @@ pub(super) struct Equations {
 }
 
 impl Equations {
-    /// Mends the guess until all optimality conditions hold; false if that takes too long or the equations become singular.
+    /// Mends the guess until all optimality conditions hold; false if that takes more than some changes or the equations become singular.
     ///
     /// One change at a time, the worst first: wrong multipliers are let go before violated rows are taken in.
-    pub(super) fn mend(&mut self, qp: &Qp<'_>, guess: &mut Guess, answer: &mut Answer) -> bool {
-        for _ in 0..10 + 3 * qp.n {
+    pub(super) fn mend(&mut self, qp: &Qp<'_>, guess: &mut Guess, answer: &mut Answer, most: usize) -> bool {
+        for _ in 0..=most {
             if !self.solve(qp, guess, answer) {
                 return false;
             }

@@ -21,6 +21,10 @@ const MARGIN: f64 = 1.2;
 const FLOOR: f64 = 0.3;
 /// After a rejected point the step is shortened by this.
 const AFTER_REJECTION: f64 = 0.25;
+/// A step whose parts are rejected down to this length is not followed any further.
+const SHORTEST: f64 = 1e-8;
+/// Points short of a rejected one whose merit is too high, before a new programme is asked.
+const MOST_TOO_HIGH: usize = 3;
 /// A step is judged by the worst of the present point and of so many before it.
 const MEMORY: usize = 3;
 
@@ -123,9 +127,10 @@ impl LineSearch<'_> {
         let worst = self.merit.worst(start) + noise;
         let length = self.step.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
         let size = self.point.z.iter().fold(1.0_f64, |m, z| m.max(z.abs()));
-        let mut rejected = None;
+        let shortest = (f64::EPSILON * size).max(SHORTEST * length.min(1.0));
+        let (mut rejected, mut too_high) = (None, 0);
         let mut part = 1.0;
-        while part * length > f64::EPSILON * size && part > 1e-14 {
+        while part * length > shortest && part > 1e-14 {
             let mut trial = self.moved(self.step, part);
             let limit = if rejected.is_none() { worst } else { start + noise } + SUFFICIENT * part * slope;
             let mut next = AFTER_REJECTION;
@@ -145,8 +150,9 @@ impl LineSearch<'_> {
                     // Where the parabola through the merit here and there, with the slope here, is least.
                     let least = -slope * part / (2.0 * (merit - start - part * slope));
                     next = if least.is_finite() { least.clamp(0.1, 0.5) } else { next };
-                    if rejected.is_none() {
-                        return Found { next: None, part: next, rejected };
+                    too_high += 1;
+                    if rejected.is_none() || too_high >= MOST_TOO_HIGH {
+                        return Found { next: None, part: next * part, rejected };
                     }
                 }
             } else {

@@ -147,7 +147,7 @@ pub struct Counters {
     pub rejections: usize,
     /// Quadratic programmes solved, corrections included.
     pub qps: usize,
-    /// Those of them for which the guess of the active set failed and the interior-point method was called.
+    /// Those of them for which both methods of active sets failed and the interior-point method was called.
     pub interior_qps: usize,
     /// Iterations.
     pub iterations: usize,

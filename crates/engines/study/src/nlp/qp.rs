@@ -5,13 +5,18 @@
 //!
 //! `H` is positive definite, so any point that satisfies the optimality conditions *is* the solution. That licenses a cheap first try:
 //! start from the active set of the last programme, mend it a few times, and accept it only when every condition was checked. Near
-//! a solution the active set no longer changes and one small linear system per iteration is all. Where the guess fails, the
-//! interior-point method decides, on the rows near their bounds first and then on those that its answer violates, until none is; its
-//! answer, exact to about 1e-9, is then taken to working precision by the same linear system.
+//! a solution the active set no longer changes and one small linear system per iteration is all. Where the guess fails, a dual
+//! active-set method begins anew. Where that cycles, or cannot tell whether anything satisfies the rows, the interior-point method
+//! decides, on the rows near their bounds first and then on those that its answer violates, until none is. Either answer is then taken
+//! to working precision by the same linear system.
 
 use super::active::{Equations, Guess};
+use super::dual::Dual;
 use super::interior;
 use super::outcome::Counters;
+
+/// Changes of the last active set that cost less than a new beginning.
+const FEW: usize = 5;
 
 /// Data of a quadratic programme; matrices are row-major.
 #[derive(Debug, Clone, Copy)]
@@ -61,7 +66,7 @@ pub(super) enum Outcome {
     Solved,
     /// The rows contradict each other or the bounds (only without a penalty).
     Infeasible,
-    /// The interior-point method broke down.
+    /// The interior-point method broke down too.
     Failed,
 }
 
@@ -70,6 +75,7 @@ pub(super) enum Outcome {
 pub(super) struct QpSolver {
     equations: Equations,
     guess: Guess,
+    dual: Dual,
     pub(super) answer: Answer,
 }
 
@@ -81,20 +87,30 @@ impl QpSolver {
             return self.without_variables(qp);
         }
         self.guess.fit(qp);
-        if self.equations.mend(qp, &mut self.guess, &mut self.answer) {
+        if self.equations.mend(qp, &mut self.guess, &mut self.answer, FEW) {
             return Outcome::Solved;
         }
-        counters.interior_qps += 1;
-        let found = match interior::solve(qp, &self.guess) {
-            Ok(found) => found,
-            Err(outcome) => {
+        let mut found = Answer::default();
+        match self.dual.solve(qp) {
+            Some(Outcome::Solved) => self.dual.read(&mut self.guess, &mut found),
+            Some(outcome) => {
                 self.guess = Guess::default();
                 return outcome;
             }
-        };
-        self.guess.read(qp, &found);
+            None => {
+                counters.interior_qps += 1;
+                found = match interior::solve(qp, &self.guess) {
+                    Ok(found) => found,
+                    Err(outcome) => {
+                        self.guess = Guess::default();
+                        return outcome;
+                    }
+                };
+                self.guess.read(qp, &found);
+            }
+        }
         let mut polished = self.guess.clone();
-        if self.equations.mend(qp, &mut polished, &mut self.answer) {
+        if self.equations.mend(qp, &mut polished, &mut self.answer, 10 + 3 * qp.n) {
             self.guess = polished;
         } else {
             self.answer = found;

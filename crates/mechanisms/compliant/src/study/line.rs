@@ -176,18 +176,49 @@ fn of_polygons([one, other]: [&Line; 2], ranges: [[f64; 2]; 2]) -> (f64, f64, f6
     let mut best = (f64::INFINITY, 0.0, 0.0);
     let last = |line: &Line, i: usize, range: &Range<usize>| (i + STRIDE).min(range.end).min(line.cells());
     let (own, its) = (cells(one, ranges[0]), cells(other, ranges[1]));
+    let sides: Vec<(usize, usize, Disc)> = its
+        .clone()
+        .step_by(STRIDE)
+        .map(|j| {
+            let j_end = last(other, j, &its);
+            (j, j_end, Disc::around([other.0[j][0], other.0[j_end][0]]))
+        })
+        .collect();
     for i in own.clone().step_by(STRIDE) {
         let i_end = last(one, i, &own);
-        for j in its.clone().step_by(STRIDE) {
-            let j_end = last(other, j, &its);
-            let (distance, s, t) = of_segments([one.0[i][0], one.0[i_end][0]], [other.0[j][0], other.0[j_end][0]]);
+        let disc = Disc::around([one.0[i][0], one.0[i_end][0]]);
+        for (j, j_end, other_disc) in &sides {
+            if disc.surely_beyond(other_disc, best.0) {
+                continue;
+            }
+            let (distance, s, t) = of_segments([one.0[i][0], one.0[i_end][0]], [other.0[*j][0], other.0[*j_end][0]]);
             if distance < best.0 {
                 let along = |from: usize, to: usize, part: f64| from as f64 + part * (to - from) as f64;
-                best = (distance, along(i, i_end, s) / count_u, along(j, j_end, t) / count_v);
+                best = (distance, along(i, i_end, s) / count_u, along(*j, *j_end, t) / count_v);
             }
         }
     }
     best
+}
+
+/// The disc that a segment is a diameter of.
+struct Disc {
+    centre: [f64; 2],
+    radius: f64,
+}
+
+impl Disc {
+    fn around([from, to]: [[f64; 2]; 2]) -> Self {
+        let along = minus(to, from);
+        Self { centre: [0, 1].map(|axis| f64::midpoint(from[axis], to[axis])), radius: 0.5 * dot(along, along).sqrt() }
+    }
+
+    /// Whether the squares of all distances between two discs are larger than some square, rounding included.
+    fn surely_beyond(&self, other: &Self, square: f64) -> bool {
+        let apart = minus(other.centre, self.centre);
+        let reach = (square.sqrt() + self.radius + other.radius) * (1.0 + 1e-9);
+        dot(apart, apart) > reach * reach
+    }
 }
 
 /// Squared distance of two segments, and the parts of them at which it is least: at an end of one of them, unless they cross.

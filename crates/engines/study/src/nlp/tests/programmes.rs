@@ -1,6 +1,7 @@
 //! The two ways to a quadratic programme, active sets and interior points, are independent: they must agree, and satisfy the conditions.
 
-use super::super::active::Guess;
+use super::super::active::{Guess, Side};
+use super::super::dual::Dual;
 use super::super::hessian::dot;
 use super::super::interior;
 use super::super::outcome::Counters;
@@ -119,5 +120,52 @@ fn a_remembered_set_needs_no_interior_points() {
         let forces: f64 = (0..100).map(|i| first.rows[i] * qp.row(i)[j]).sum();
         let left = qp.gradient[j] + dot(&qp.hessian[j * 14..(j + 1) * 14], &first.step) - forces - first.bounds[j];
         assert!(left.abs() < 1e-12, "{left}");
+    }
+}
+
+/// With two equations, firm and at a price that some rows are not worth.
+#[test]
+fn the_dual_method_finds_what_interior_points_find() {
+    for seed in 0..40 {
+        let mut data = Data::random(9, 40, seed % 2 == 1, seed);
+        data.row_upper[..2].copy_from_slice(&data.row_lower[..2]);
+        for penalty in [f64::INFINITY, 10.0, 0.5] {
+            let qp = data.qp(penalty);
+            let (mut dual, mut guess, mut found) = (Dual::default(), Guess::default(), Answer::default());
+            let outcome = dual.solve(&qp).unwrap();
+            match interior::solve(&qp, &Guess::default()) {
+                Ok(other) => {
+                    assert_eq!(outcome, Outcome::Solved);
+                    dual.read(&mut guess, &mut found);
+                    assert_near(&found, &other, 1e-5);
+                    let exceeded = guess.rows.iter().any(|side| matches!(side, Side::Below | Side::Above));
+                    assert_eq!(exceeded, found.rows.iter().any(|y| y.abs() >= penalty));
+                }
+                Err(other) => assert_eq!(outcome, other),
+            }
+        }
+    }
+}
+
+/// min ½d² − 3d with d ≤ 1: at the price γ the multiplier, 3 − d, reaches γ where d = 3 − γ, unless that is below 1.
+#[test]
+fn a_row_is_exceeded_where_it_is_not_worth_its_price() {
+    for (penalty, step, multiplier) in [(0.5, 2.5, -0.5), (2.5, 1.0, -2.0), (f64::INFINITY, 1.0, -2.0)] {
+        let qp = Qp {
+            n: 1,
+            hessian: &[1.0],
+            gradient: &[-3.0],
+            rows: &[1.0],
+            row_lower: &[f64::NEG_INFINITY],
+            row_upper: &[1.0],
+            lower: &[-10.0],
+            upper: &[10.0],
+            penalty,
+            firm_from: 1,
+        };
+        let (mut dual, mut guess, mut found) = (Dual::default(), Guess::default(), Answer::default());
+        assert_eq!(dual.solve(&qp), Some(Outcome::Solved));
+        dual.read(&mut guess, &mut found);
+        assert!((found.step[0] - step).abs() < 1e-15 && (found.rows[0] - multiplier).abs() < 1e-15, "{found:?}");
     }
 }
