@@ -19,6 +19,7 @@ pub(crate) fn command() -> Command {
         .subcommand(sweep())
         .subcommand(merge())
         .subcommand(tolerance())
+        .subcommand(export())
         .subcommand(reproduce())
         .subcommand(explain())
         .subcommand(materials())
@@ -113,6 +114,39 @@ fn optimise() -> Command {
         .arg(number("seed", "Seed of the starts after the first, instead of `seed` of the file").value_parser(clap::value_parser!(u32)))
         .arg(json());
     choices(command).after_help(OPTIMISE_HELP)
+}
+
+const EXPORT_HELP: &str = "\
+Formats: dxf (closed polylines with arcs, for cutting), svg (true size), step (solid), stl and 3mf (meshes). Lengths are in millimetres.
+
+The section [parts] of the file says how large pads, holes and fillets are; [process] says what can be made.
+
+Exit codes: 0 written, 1 written but the process cannot make it, 2 error in the file or the call, or a design that is no part in one piece, 4 input/output.";
+
+fn export() -> Command {
+    let command = Command::new("export")
+        .about("Files for making the part: DXF, SVG, STEP, STL, 3MF")
+        .arg(file().help("Project file"))
+        .arg(
+            Arg::new("format")
+                .long("format")
+                .value_name("FORMATS")
+                .value_delimiter(',')
+                .default_value("dxf,step")
+                .value_parser(crate::commands::export::parse_format)
+                .help("Formats, separated by commas: dxf, svg, step, stl, 3mf"),
+        )
+        .arg(
+            Arg::new("out")
+                .long("out")
+                .value_name("DIR")
+                .required(true)
+                .value_hint(ValueHint::DirPath)
+                .value_parser(clap::value_parser!(std::path::PathBuf))
+                .help("Write the files into this folder"),
+        )
+        .arg(json());
+    choices(command).after_help(EXPORT_HELP)
 }
 
 const SWEEP_HELP: &str = "\

@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Some(("sweep", m)) => commands::sweep::run(m),
         Some(("optimise", m)) => commands::optimise::run(m),
         Some(("tolerance", m)) => commands::tolerance::run(m),
+        Some(("export", m)) => commands::export::run(m),
         Some(("merge", m)) => commands::merge::run(m),
         Some(("reproduce", m)) => commands::reproduce::run(m),
         Some(("explain", m)) => commands::explain::run(m),

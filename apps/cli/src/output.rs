@@ -80,16 +80,16 @@ pub(crate) fn prepare(folder: &Path) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// [`WriteError`] names the file.
-pub(crate) fn write_all(folder: &Path, files: &[(String, String)]) -> Result<(), WriteError> {
+pub(crate) fn write_all<T: AsRef<[u8]>>(folder: &Path, files: &[(String, T)]) -> Result<(), WriteError> {
     let at = |name: &String| folder.join(name);
     let mut staged = Vec::new();
-    for (name, text) in files {
+    for (name, content) in files {
         let stage = || {
             if at(name).is_dir() {
                 return Err(io::Error::from(ErrorKind::IsADirectory));
             }
             let mut file = temporary(folder)?;
-            file.write_all(text.as_bytes())?;
+            file.write_all(content.as_ref())?;
             file.as_file().sync_all()?;
             readable_by_others(file.as_file())?;
             Ok(file)

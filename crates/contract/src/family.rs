@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
-use forcewright_model::{Figure, Outcome, ParameterRow, Statement};
+use forcewright_model::{Figure, NoPart, Outcome, ParameterRow, PartSet, Statement};
 
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -35,6 +35,12 @@ pub trait Mechanism: Sync + 'static {
 
     /// Analyses a design. A pure function of it; a solver's failure is in the outcome's status.
     fn analyse(design: &Self::Design, progress: Progress<'_>) -> Analysis;
+
+    /// What is made of a design, and whether its process can make it.
+    ///
+    /// # Errors
+    /// [`NoPart`] where it cannot be made as it is drawn.
+    fn parts(design: &Self::Design) -> Result<PartSet, NoPart>;
 
     /// The sections of the project file that studies read.
     fn studies(spec: &Self::Spec) -> &Studies;
@@ -128,6 +134,11 @@ pub trait Family: Sync {
 pub trait Understood: Sync {
     /// Analyses it.
     fn analyse(&self, progress: Progress<'_>) -> Analysis;
+    /// See [`Mechanism::parts`].
+    ///
+    /// # Errors
+    /// [`NoPart`] where it cannot be made as it is drawn.
+    fn parts(&self) -> Result<PartSet, NoPart>;
     /// Its parameters as typed.
     fn parameters(&self) -> Vec<ParameterRow>;
     /// Its numbers, by their paths.
@@ -161,6 +172,10 @@ struct Ready<M: Mechanism> {
 impl<M: Mechanism> Understood for Ready<M> {
     fn analyse(&self, progress: Progress<'_>) -> Analysis {
         M::analyse(&self.design, progress)
+    }
+
+    fn parts(&self) -> Result<PartSet, NoPart> {
+        M::parts(&self.design)
     }
 
     fn parameters(&self) -> Vec<ParameterRow> {

@@ -15,6 +15,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod export;
 mod front;
 pub mod gallery;
 mod load;
@@ -25,12 +26,15 @@ mod tolerance;
 pub use forcewright_base as base;
 pub use forcewright_compliant as compliant;
 pub use forcewright_contract as contract;
+pub use forcewright_curves as curves;
 pub use forcewright_elements as elements;
+pub use forcewright_fabricate as fabricate;
 pub use forcewright_model as model;
 pub use forcewright_report as report;
 pub use forcewright_study as study;
 
 pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
+pub use export::{Exported, area_m2};
 pub use front::{Front, FrontPoint, FrontProgress, FrontTask, Origin};
 pub use load::{Loaded, Refused};
 pub use optimise::{Optimised, Robust, Robustness, Wording};
@@ -52,7 +56,7 @@ pub fn family(id: &str) -> Option<&'static dyn Family> {
 
 /// The long story of every code, in order.
 pub fn explanations() -> impl Iterator<Item = &'static Explanation> {
-    let studies = forcewright_contract::scatter::CODES.iter().chain(tolerance::CODES);
+    let studies = forcewright_contract::scatter::CODES.iter().chain(tolerance::CODES).chain(export::CODES);
     forcewright_contract::codes::CODES.iter().chain(sweep::CODES).chain(studies).chain(FAMILIES.iter().flat_map(|f| f.explanations()))
 }
 

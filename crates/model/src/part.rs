@@ -2,6 +2,8 @@
 
 use forcewright_curves::Profile;
 
+use crate::Check;
+
 /// A plate of constant thickness, cut or printed in one piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
@@ -21,6 +23,26 @@ pub struct Part {
     pub holes: Vec<Hole>,
     /// What the maker must know, a sentence each.
     pub notes: Vec<String>,
+}
+
+/// The plates of a mechanism.
+#[derive(Clone, Debug, Default)]
+pub struct PartSet {
+    /// One of each kind.
+    pub parts: Vec<Part>,
+    /// Whether the process can make them.
+    pub checks: Vec<Check>,
+}
+
+/// Why a mechanism has no plates.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoPart {
+    /// Stable code; `explain` knows it.
+    pub code: &'static str,
+    /// What is wrong, with the names of the project.
+    pub message: String,
+    /// What would help.
+    pub help: String,
 }
 
 /// A round hole through a plate.

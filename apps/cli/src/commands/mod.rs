@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod explain;
+pub(crate) mod export;
 pub(crate) mod front;
 pub(crate) mod materials;
 pub(crate) mod merge;
@@ -32,6 +33,7 @@ pub(crate) fn welcome() -> u8 {
            forcewright sweep lan-table3.toml --vary design.thickness=0.9mm..1.1mm:5    a table of designs\n  \
            forcewright optimise FILE --out out            a better design, within ranges and requirements\n  \
            forcewright tolerance tolerance-lan-thin.toml  the yield under the scatter of making\n  \
+           forcewright export lan-table3.toml --out out   DXF and STEP of the part\n  \
            forcewright reproduce lan2010                  the paper's numbers beside ours\n  \
            forcewright materials                          what `material.use` can name\n  \
            forcewright explain COMP002                    what a check or an error means\n\n\

@@ -168,7 +168,8 @@ fn margin(margin: f64) -> String {
     }
 }
 
-fn requirement_table(checks: &[Check]) -> String {
+/// The requirements as a table.
+pub(super) fn requirement_table(checks: &[Check]) -> String {
     let mut rows = vec![["", "requirement", "found", "limit", "margin", "code"].map(str::to_owned).to_vec()];
     for check in checks {
         let mark = match check.state {

@@ -10,6 +10,7 @@ use crate::layout::{self, Layout, Mirror, parse_mirror};
 use crate::loads::{self, Control, Loads};
 use crate::material::{Material, check_complete, fill_materials, typed_material};
 use crate::metrics::METRICS;
+use crate::parts::Making;
 use crate::rules::{check_held, check_joints, check_mirror, check_network};
 use crate::spec::{self, Spec};
 
@@ -52,6 +53,8 @@ pub struct Design {
     pub joints: Joints,
     /// Error allowed, relative to the largest force.
     pub accuracy: f64,
+    /// How it is made.
+    pub making: Making,
     /// What it must do; `None` if the project asks for nothing.
     pub requirements: Option<Requirements>,
     /// Units in which people are shown results.
@@ -239,6 +242,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         theory: theory_of(spec),
         joints,
         accuracy: si(spec.model.accuracy.as_ref())?,
+        making: making_of(spec, diagnostics),
         requirements,
         units,
     })
@@ -248,6 +252,29 @@ fn theory_of(spec: &Spec) -> Theory {
     match spec.model.beam.as_ref().map(|b| b.value) {
         Some("inextensible") => Theory::Inextensible,
         _ => Theory::Reissner,
+    }
+}
+
+/// How it is made. A fillet that its cutter does not reach is reported.
+fn making_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Making {
+    let (process, parts) = (&spec.process, &spec.parts);
+    if let (Some(fillet), Some(cutter)) = (&parts.fillet, &process.cutter_diameter)
+        && fillet.value.si < 0.5 * cutter.value.si * (1.0 - 1e-9)
+    {
+        diagnostics.push(
+            Diagnostic::error("E0519", fillet.span, "the fillet is smaller than the cutter")
+                .label("this radius")
+                .related(cutter.span, "twice the smallest inner radius")
+                .help("leave `fillet` out to take the radius of the cutter"),
+        );
+    }
+    Making {
+        cutter_m: si(process.cutter_diameter.as_ref()),
+        wall_min_m: si(process.wall_min.as_ref()),
+        gap_min_m: si(process.gap_min.as_ref()),
+        fillet_m: si(parts.fillet.as_ref()),
+        pad_m: parts.pad.as_ref().map(|p| [p.value[0].si, p.value[1].si]),
+        hole_m: si(parts.hole.as_ref()),
     }
 }
 

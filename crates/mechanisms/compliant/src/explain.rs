@@ -45,6 +45,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "Layers in series carry the same force and share the displacement. That all move alike is an equilibrium, but a stable one only while the force of a layer rises with its displacement: where it falls, one layer runs ahead and the others spring back, smoothly or with a jump. Found by following the layers slowly from minimum to minimum of their energy Σ W(δᵢ) at Σ δᵢ = Δ, with an imperfection of a millionth of the travel; the value is the displacement at which they differ by more than 1 % of the travel of one.\n\nBeyond, the force stays between the smallest and the largest that the curve of one layer has there, but positions jump and the way back differs from the way forth: the report shows both. The metrics are those of layers that move alike. Shapes whose force never falls (`stiffness = { min = \"0 N/mm\" }`) do not part.",
     ),
     code(
+        "COMP011",
+        "thinnest wall of the part",
+        "The diameter of the smallest circle that fits into the material between two faces of the outline, holes included, against `process.wall_min`. Beams are as thick there as the design says; walls between a hole and an edge count too.",
+    ),
+    code(
+        "COMP012",
+        "narrowest gap of the part",
+        "The diameter of the smallest circle that fits into what is cut out, between two faces of the outline, against `process.gap_min`, or the diameter of the cutter. Corners sharper than the cutter are filled by fillets before.",
+    ),
+    code(
         "E0501",
         "position of a node unknown",
         "A node has `at`, or it is joined by a beam with `angle` and `length` to a node whose position is known.",
@@ -147,6 +157,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0508",
         "beams cross",
         "The axes of two beams, of a beam with itself, or of a beam with the mirror line (and so with the other half) intersect. In a plane part that is contact, which is not modelled: the curve holds only up to the named displacement. Only axes are tested; beams of finite thickness touch a little earlier.",
+    ),
+    code(
+        "E0518",
+        "no part in one piece",
+        "The drawn beams, pads and blocks make no plate that can be cut in one piece: something turns on a hinge or a bearing, a fillet does not fit between two beams, or material runs into other material. The message names the place.",
+    ),
+    code(
+        "E0519",
+        "a fillet smaller than the cutter",
+        "A cutter leaves at least its own radius in an inner corner. `parts.fillet` may be larger than that, or left out.",
     ),
     code(
         "E0516",

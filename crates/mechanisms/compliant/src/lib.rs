@@ -15,6 +15,7 @@ mod layout;
 mod loads;
 mod material;
 mod metrics;
+mod parts;
 mod reproduce;
 mod room;
 mod rules;
@@ -29,7 +30,7 @@ mod sway;
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress, Reproduction};
 use forcewright_contract::studies::{Free, Purpose, Studies};
-use forcewright_model::{Counter, Outcome, Status, StatusKind};
+use forcewright_model::{Counter, NoPart, Outcome, PartSet, Status, StatusKind};
 
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -43,6 +44,7 @@ pub use layout::{Circle, Layout, Mirror, Rows};
 pub use loads::Control;
 pub use material::Material;
 pub use metrics::{METRICS, MetricInfo};
+pub use parts::Making;
 pub use room::{Margin, Nearest, margin, nearest};
 pub use spec::Spec;
 pub use stack::Stack;
@@ -93,6 +95,10 @@ impl Mechanism for Compliant {
         };
         let figures = figures::figures(design, &behaviour, &measured);
         Analysis { outcome, figures, model: statements::model(design), limits: statements::limits(design) }
+    }
+
+    fn parts(design: &Design) -> Result<PartSet, NoPart> {
+        parts::parts(design)
     }
 
     fn studies(spec: &Spec) -> &Studies {

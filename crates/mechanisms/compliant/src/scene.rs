@@ -154,7 +154,7 @@ fn outline(points: Vec<[f64; 2]>, half_m: f64) -> Vec<[f64; 2]> {
 }
 
 /// The corners of the convex hull of points, counterclockwise (A. M. Andrew, Information Processing Letters 9 (1979)).
-fn hull(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+pub(crate) fn hull(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let turns = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let size = all.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));

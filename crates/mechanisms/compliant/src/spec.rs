@@ -23,6 +23,8 @@ pub struct Spec {
     pub(crate) design: Section<Design>,
     /// `[layout]`
     pub(crate) layout: Section<Layout>,
+    /// `[parts]`
+    pub(crate) parts: Section<Parts>,
     /// `[load]`, or `[[load]]` in order
     pub(crate) load: Vec<Member<Load>>,
     /// `[model]`
@@ -112,7 +114,17 @@ pub(crate) struct Material {
 #[derive(Debug, Default)]
 pub(crate) struct Process {
     method: Slot<&'static str>,
-    cutter_diameter: Slot<Quantity>,
+    pub cutter_diameter: Slot<Quantity>,
+    pub wall_min: Slot<Quantity>,
+    pub gap_min: Slot<Quantity>,
+}
+
+/// The plate that is cut.
+#[derive(Debug, Default)]
+pub(crate) struct Parts {
+    pub fillet: Slot<Quantity>,
+    pub pad: Slot<[Quantity; 2]>,
+    pub hole: Slot<Quantity>,
 }
 
 /// The flexure network.
@@ -270,9 +282,10 @@ impl Describe for Spec {
         self.header.describe(v);
         self.requirements.describe(v, &Param::new("requirements", "What the mechanism must do. Tested, never changed by a study."));
         self.material.describe(v, &Param::new("material", "What the beams are made of.").required());
-        self.process.describe(v, &Param::new("process", "How it is made. Recorded; not used by the force analysis."));
+        self.process.describe(v, &Param::new("process", "How it is made: for the part, not for the force."));
         self.design.describe(v, &Param::new("design", "The flexure network.").required());
         self.layout.describe(v, &Param::new("layout", "Copies of the drawn network; force, travel, energy, mass and pictures follow."));
+        self.parts.describe(v, &Param::new("parts", "The plate that is cut: pads, holes, fillets. Without influence on the force."));
         v.members(
             &Param::new(
                 "load",
@@ -391,6 +404,28 @@ impl Describe for Process {
                 .above(0.0, 0.1),
             &mut self.cutter_diameter,
         );
+        let least = |key, doc| Param::new(key, doc).of(Dimension::Length).above(0.0, 0.1);
+        v.quantity(&least("wall_min", "Thinnest wall that the process leaves standing."), &mut self.wall_min);
+        v.quantity(&least("gap_min", "Narrowest gap that it cuts; by default the diameter of the cutter."), &mut self.gap_min);
+    }
+}
+
+impl Describe for Parts {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let length = |key, doc| Param::new(key, doc).of(Dimension::Length);
+        v.quantity(
+            &length("fillet", "Radius in inner corners; by default that of the cutter, or else half the thinnest thickness.").above(0.0, 0.1),
+            &mut self.fillet,
+        );
+        v.point(
+            &length(
+                "pad",
+                "Size of the pads where the ground or a guide holds a node: along the edge that its beams leave, and away from them. By default six thicknesses, and twice the hole.",
+            )
+            .above(0.0, 1.0),
+            &mut self.pad,
+        );
+        v.quantity(&length("hole", "Diameter of a hole in every pad and block; without it there is none.").above(0.0, 0.5), &mut self.hole);
     }
 }
 

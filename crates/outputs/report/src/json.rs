@@ -53,7 +53,8 @@ fn status(status: &Status, error_estimate: Option<f64>) -> Value {
     Value::Object(out)
 }
 
-fn check(check: &Check) -> Value {
+/// A check as results hold it.
+pub fn check(check: &Check) -> Value {
     let sense = match check.sense {
         Sense::AtMost => "at most",
         Sense::AtLeast => "at least",

@@ -1,0 +1,86 @@
+//! `forcewright export`: files for making the parts.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::str::FromStr as _;
+
+use clap::ArgMatches;
+use forcewright::base::text::visible;
+use forcewright::base::units::format_number;
+use forcewright::fabricate::{Format, Options};
+use forcewright::{DiskFiles, Exported, Loaded, area_m2};
+
+use super::solve::{requirement_table, show};
+use super::{choices, refuse};
+use crate::{exit, output};
+
+pub(crate) fn run(matches: &ArgMatches) -> u8 {
+    let (Some(file), Some(out)) = (matches.get_one::<PathBuf>("file"), matches.get_one::<PathBuf>("out")) else { return exit::USAGE };
+    let as_json = matches.get_flag("json");
+    let formats: Vec<Format> = matches.get_many::<Format>("format").map(|all| all.copied().collect()).unwrap_or_default();
+    let loaded = match Loaded::from_file(&DiskFiles, file, &choices(matches)) {
+        Ok(loaded) => loaded,
+        Err(refused) => return refuse(&refused, as_json),
+    };
+    output::narrate(&loaded.project.diagnostics.render(&loaded.project.sources, output::colour_on_stderr()));
+    if let Err(failed) = output::prepare(out) {
+        return output::write_failed(&failed, as_json);
+    }
+    let exported = match loaded.export(&stem(file), &formats, &Options::default()) {
+        Ok(exported) => exported,
+        Err(none) => {
+            output::complain(none.code, &none.message, &none.help, as_json);
+            return exit::USAGE;
+        }
+    };
+    if let Err(failed) = output::write_all(out, &exported.files) {
+        return output::write_failed(&failed, as_json);
+    }
+    if as_json {
+        output::print(&output::json_text(&exported.document()));
+    } else {
+        show(&summary(&exported));
+    }
+    let names: Vec<&str> = exported.files.iter().map(|(name, _)| name.as_str()).collect();
+    output::narrate(&visible(&format!("wrote {} in {}", names.join(", "), out.display())));
+    output::narrate("\n");
+    if exported.can_be_made() { exit::MET } else { exit::MISSED }
+}
+
+/// What files are named after: the project file without its ending.
+fn stem(file: &Path) -> String {
+    file.file_stem().map_or_else(|| "part".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// The formats of a list such as `dxf,step`.
+pub(crate) fn parse_format(text: &str) -> Result<Format, String> {
+    Format::from_str(text).map_err(|unknown| unknown.to_string())
+}
+
+fn summary(exported: &Exported) -> String {
+    let mut text = String::new();
+    let millimetres = |m: f64| format_number(1e3 * m, 5);
+    for part in &exported.set.parts {
+        let bounds = part.outline.bounds();
+        let [width, height] = [0, 1].map(|k| millimetres(bounds.max_m[k] - bounds.min_m[k]));
+        let material = part.material.as_ref().map_or_else(String::new, |m| format!(", {m}"));
+        let _ = writeln!(text, "{}: {width} × {height} × {} mm{material}", part.name, millimetres(part.depth_m));
+        let _ = writeln!(
+            text,
+            "  area {} mm², {} cut-outs, {} holes",
+            format_number(1e6 * area_m2(part), 6),
+            part.cutouts.len(),
+            part.holes.len()
+        );
+        for note in &part.notes {
+            let _ = writeln!(text, "  {note}");
+        }
+    }
+    let _ = write!(text, "\n{}", requirement_table(&exported.set.checks));
+    for check in &exported.set.checks {
+        if let Some(advice) = &check.advice {
+            let _ = writeln!(text, "\n{} {}: {advice}", check.code, check.name);
+        }
+    }
+    text
+}

@@ -1,0 +1,168 @@
+//! Parts of designs: measured back from their files, and what is no part.
+
+use forcewright::base::maths;
+use forcewright::curves::fit::Oriented;
+use forcewright::curves::walls::thickness_along;
+use forcewright::curves::{Profile, Segment};
+use forcewright::fabricate::{Format, Options};
+use forcewright::model::{CheckState, NoPart};
+use forcewright::{Choices, Exported, Loaded, area_m2};
+
+fn loaded(name: &str, set: &[&str]) -> Loaded {
+    let example = forcewright::gallery::find(name).expect("in the gallery");
+    let choices = Choices { set: set.iter().map(|s| (*s).to_owned()).collect(), ..Choices::default() };
+    Loaded::from_text(name, example.text, &choices).unwrap_or_else(|e| panic!("{}", e.render(false)))
+}
+
+fn export(name: &str, set: &[&str], formats: &[Format]) -> Result<Exported, NoPart> {
+    loaded(name, set).export("part", formats, &Options::default())
+}
+
+/// The closed polylines of a drawing, m: lines and arcs by their bulges (the tangent of a quarter of the angle of an arc).
+fn polylines(dxf: &[u8]) -> Vec<Profile> {
+    let text = std::str::from_utf8(dxf).expect("text");
+    let mut lines = text.lines().map(str::trim);
+    let mut all: Vec<Vec<[f64; 3]>> = Vec::new();
+    let mut inside = false;
+    while let (Some(code), Some(value)) = (lines.next(), lines.next()) {
+        let number = || value.parse::<f64>().expect("a number");
+        match code {
+            "0" => {
+                inside = value == "LWPOLYLINE";
+                if inside {
+                    all.push(Vec::new());
+                }
+            }
+            "10" if inside => all.last_mut().expect("begun").push([1e-3 * number(), 0.0, 0.0]),
+            "20" if inside => all.last_mut().and_then(|p| p.last_mut()).expect("begun")[1] = 1e-3 * number(),
+            "42" if inside => all.last_mut().and_then(|p| p.last_mut()).expect("begun")[2] = number(),
+            _ => {}
+        }
+    }
+    all.iter().map(|corners| polyline(corners)).collect()
+}
+
+fn polyline(corners: &[[f64; 3]]) -> Profile {
+    let next = |i: usize| corners[(i + 1) % corners.len()];
+    let segment = |(i, [x, y, bulge]): (usize, &[f64; 3])| {
+        let [to_x, to_y, _] = next(i);
+        if *bulge == 0.0 {
+            return Segment::Line { to_m: [to_x, to_y] };
+        }
+        // The middle lies (1 − b²)/(4b) chords to the left of the middle of the chord.
+        let off = (1.0 - bulge * bulge) / (4.0 * bulge);
+        let centre_m = [0.5 * (x + to_x) - off * (to_y - y), 0.5 * (y + to_y) + off * (to_x - x)];
+        Segment::Arc { to_m: [to_x, to_y], centre_m, counterclockwise: *bulge > 0.0 }
+    };
+    Profile { start_m: [corners[0][0], corners[0][1]], segments: corners.iter().enumerate().map(segment).collect() }
+}
+
+/// The axes of the beams of Table 3 (η(u) = c0 + c1·u + c2·u² from their nodes), computed here by Simpson's rule.
+fn table3_axes() -> Vec<Box<dyn Fn(f64) -> Oriented>> {
+    let nodes = [[2.5e-3, 0.0], [34.5e-3, 0.0], [30.5e-3, 18.77e-3], [12.44e-3, 24e-3], [2.5e-3, 40e-3]];
+    let beams = [(0, 2, [1.3092, -1.5707]), (1, 2, [-0.756, 1.5707]), (2, 3, [0.3013, 1.5707]), (3, 4, [0.226, -1.148])];
+    let integral = |bend: [f64; 2], u: f64| {
+        let f = |s: f64| maths::sin_cos(bend[0] * s + bend[1] * s * s);
+        let n = 2000;
+        let weight = |i: usize| if i == 0 || i == n { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+        let h = u / n as f64;
+        (0..=n).fold([0.0, 0.0], |[x, y], i| {
+            let (sin, cos) = f(h * i as f64);
+            [x + weight(i) * cos * h / 3.0, y + weight(i) * sin * h / 3.0]
+        })
+    };
+    beams
+        .into_iter()
+        .map(|(from, to, bend)| {
+            let (a, b): ([f64; 2], [f64; 2]) = (nodes[from], nodes[to]);
+            let chord = [b[0] - a[0], b[1] - a[1]];
+            let own = integral(bend, 1.0);
+            let length = maths::hypot(chord[0], chord[1]) / maths::hypot(own[0], own[1]);
+            let c0 = maths::atan2(chord[1], chord[0]) - maths::atan2(own[1], own[0]);
+            Box::new(move |u: f64| {
+                let (p, (sin, cos)) = (integral(bend, u), maths::sin_cos(c0));
+                let (ty, tx) = maths::sin_cos(c0 + bend[0] * u + bend[1] * u * u);
+                Oriented { point_m: [a[0] + length * (cos * p[0] - sin * p[1]), a[1] + length * (sin * p[0] + cos * p[1])], tangent: [tx, ty] }
+            }) as Box<dyn Fn(f64) -> Oriented>
+        })
+        .collect()
+}
+
+/// The thickness of every beam measured in the drawing gives the force of the design: w³ within 1 %, and far better.
+#[test]
+fn the_drawing_has_the_thickness_that_gives_the_force() {
+    let exported = export("compliant/lan-table3", &[], &[Format::Dxf]).expect("a part");
+    assert_eq!((exported.set.parts.len(), exported.files.len()), (1, 1));
+    let profiles = polylines(&exported.files[0].1);
+    // Ground and block apart from windows: four beams a half close windows between them.
+    assert_eq!(profiles.len(), 1 + exported.set.parts[0].cutouts.len());
+    let mut measured = Vec::new();
+    for axis in table3_axes() {
+        for section in thickness_along(&profiles, axis.as_ref(), &[0.2, 0.35, 0.5, 0.65, 0.8]) {
+            let thickness = section.expect("the axis lies in the part").thickness_m();
+            assert!((thickness - 1e-3).abs() < 3e-6, "{thickness}");
+            measured.push(thickness);
+        }
+    }
+    let mean = measured.iter().sum::<f64>() / measured.len() as f64;
+    let force = |set: &[&str]| {
+        let report = loaded("compliant/lan-table3", set).solve("", "", &mut |_| true);
+        report.outcome.metric("force_at_end").expect("reached").value
+    };
+    let (wanted, found) = (force(&[]), force(&[&format!("design.thickness={mean:e} m")]));
+    assert!((found / wanted - 1.0).abs() < 1e-2, "{found} for {wanted}");
+    // The area of the drawing is that of the part: arcs stand for splines within a micrometre.
+    let area: f64 = profiles.iter().map(Profile::area_m2).sum();
+    let part = &exported.set.parts[0];
+    assert!((area / area_m2(part) - 1.0).abs() < 1e-4, "{area}");
+    // Beams and what joins them: more than the beams alone, less than with all pads in full.
+    let beams: f64 = 2.0 * 1e-3 * [0.0365, 0.0203, 0.0216, 0.0206].iter().sum::<f64>();
+    assert!(area > 0.9 * beams && area < 2.0 * beams, "{area} {beams}");
+}
+
+#[test]
+fn faces_of_the_solid_are_few() {
+    let exported = export("compliant/lan-table3", &[], &[Format::Step]).expect("a part");
+    let text = String::from_utf8(exported.files[0].1.clone()).expect("text");
+    let faces = text.matches("ADVANCED_FACE(").count();
+    // Two caps; eight beams with at most six faces each; four pads or blocks.
+    assert!(faces <= 2 + 8 * 6 + 5 * 4, "{faces}");
+    assert_eq!(text.matches("MANIFOLD_SOLID_BREP(").count(), 1);
+}
+
+#[test]
+fn every_format_is_written_and_the_same_each_time() {
+    let all = export("compliant/lan-sub-cfm", &["parts.hole=2 mm", "parts.pad=[\"6 mm\", \"6 mm\"]"], &Format::ALL).expect("a part");
+    let names: Vec<&str> = all.files.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["part.dxf", "part.svg", "part.step", "part.stl", "part.3mf"]);
+    let again = export("compliant/lan-sub-cfm", &["parts.hole=2 mm", "parts.pad=[\"6 mm\", \"6 mm\"]"], &Format::ALL).expect("a part");
+    assert_eq!(all.files, again.files);
+    assert_eq!(all.set.parts[0].holes.len(), 3, "two clamps, one block");
+}
+
+#[test]
+fn what_the_process_cannot_make_is_missed() {
+    let state = |set: &[&str], code: &str| {
+        let exported = export("compliant/lan-table3", set, &[]).expect("a part");
+        let check = exported.set.checks.iter().find(|c| c.code == code).expect("checked").clone();
+        (check.state, check.value, exported.can_be_made())
+    };
+    let (open, thinnest, made) = state(&[], "COMP011");
+    assert_eq!((open, made), (CheckState::NotAssessed, true));
+    assert!((thinnest.expect("a wall") - 1e-3).abs() < 1e-6, "{thinnest:?}");
+    assert_eq!(state(&["process.wall_min=0.8 mm"], "COMP011").0, CheckState::Met);
+    let (missed, _, made) = state(&["process.wall_min=1.2 mm"], "COMP011");
+    assert_eq!((missed, made), (CheckState::Missed, false));
+    assert_eq!(state(&["process.gap_min=40 mm"], "COMP012").0, CheckState::Missed);
+}
+
+#[test]
+fn no_part_says_why() {
+    let why = |name: &str, set: &[&str]| export(name, set, &[Format::Dxf]).expect_err("no part");
+    let large = why("compliant/lan-table3", &["parts.fillet=20 mm"]);
+    assert!(large.code == "E0518" && large.message.contains("fillet of radius 20 mm") && large.message.contains("the largest that does"), "{}", large.message);
+    let hinged = why("compliant/lan-table3", &["design.nodes.n1.support=\"pinned\""]);
+    assert!(hinged.message.contains("n1") && hinged.message.contains("bearing"), "{}", hinged.message);
+    let hole = why("compliant/lan-table3", &["parts.hole=9 mm", "parts.pad=[\"10 mm\", \"8 mm\"]"]);
+    assert!(hole.message.contains("does not fit"), "{}", hole.message);
+}
