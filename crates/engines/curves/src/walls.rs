@@ -26,6 +26,8 @@ const SAME: f64 = 1e-6;
 const ROUNDING: f64 = 4e-15;
 /// Boundaries that turn by less, rad, have no corner: a cutter leaves less than 3e-6 of its radius there.
 const KINK_RAD: f64 = 5e-3;
+/// So near to the end of a piece, as part of it, its walls are looked at.
+const BESIDE: f64 = 1e-6;
 /// The narrowest places that are refined between sites.
 const REFINED: usize = 16;
 
@@ -263,7 +265,8 @@ impl Sites {
             refined.push(index);
             let site = &self.all[index];
             let radius = |x: f64| self.wall(site.kind, x).map_or(f64::NAN, |(_, circle)| circle.radius_m);
-            let (low, high) = ((site.x - 1.5 * site.step).max(0.0), (site.x + 1.5 * site.step).min(1.0));
+            // In a corner itself every circle is too large: no wall ends there.
+            let (low, high) = ((site.x - 1.5 * site.step).max(BESIDE), (site.x + 1.5 * site.step).min(1.0 - BESIDE));
             let inside = roots::minimise(radius, low, high, 1e-8).x;
             for x in [inside, site.x, low, high] {
                 let Some((point, circle)) = self.wall(site.kind, x) else { continue };

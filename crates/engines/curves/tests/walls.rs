@@ -43,6 +43,18 @@ fn the_wall_of_a_strip_is_its_width() {
     assert!((gap.width_m - 1e-3).abs() < 1e-8, "{}", gap.width_m);
 }
 
+/// A wedge is thinnest where the circle between its sides still touches its end: of half width h at the end and slope s, r = (h + s·r)·cos.
+/// A corner of 90°, of which every circle is cut by the end, is no wall.
+#[test]
+fn a_wedge_is_thinnest_before_its_end() {
+    let wedge = Profile::polygon(&[[0.0, -0.3], [60.0, -0.15], [60.0, 0.15], [0.0, 0.3]]);
+    let slope = 0.15 / 60.0;
+    let cos = 1.0 / maths::hypot(1.0, slope);
+    let radius = 0.15 * cos / (1.0 - slope * cos);
+    let found = thinnest_wall(&[wedge]).expect("a wall").width_m;
+    assert!((found / (2.0 * radius) - 1.0).abs() < 2e-4, "{found} {}", 2.0 * radius);
+}
+
 #[test]
 fn a_slot_between_strips_is_the_gap() {
     let (half, pitch) = (0.3, 1.5);
