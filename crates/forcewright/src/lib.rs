@@ -33,8 +33,8 @@ pub use forcewright_model as model;
 pub use forcewright_report as report;
 pub use forcewright_study as study;
 
-pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
 pub use export::{Exported, area_m2};
+pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
 pub use front::{Front, FrontPoint, FrontProgress, FrontTask, Origin};
 pub use load::{Loaded, Refused};
 pub use optimise::{Optimised, Robust, Robustness, Wording};

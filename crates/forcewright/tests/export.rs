@@ -60,11 +60,20 @@ fn polyline(corners: &[[f64; 3]]) -> Profile {
 /// The axes of the beams of Table 3 (η(u) = c0 + c1·u + c2·u² from their nodes), computed here by Simpson's rule.
 fn table3_axes() -> Vec<Box<dyn Fn(f64) -> Oriented>> {
     let nodes = [[2.5e-3, 0.0], [34.5e-3, 0.0], [30.5e-3, 18.77e-3], [12.44e-3, 24e-3], [2.5e-3, 40e-3]];
+    #[expect(clippy::approx_constant, reason = "as printed")]
     let beams = [(0, 2, [1.3092, -1.5707]), (1, 2, [-0.756, 1.5707]), (2, 3, [0.3013, 1.5707]), (3, 4, [0.226, -1.148])];
     let integral = |bend: [f64; 2], u: f64| {
         let f = |s: f64| maths::sin_cos(bend[0] * s + bend[1] * s * s);
         let n = 2000;
-        let weight = |i: usize| if i == 0 || i == n { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+        let weight = |i: usize| {
+            if i == 0 || i == n {
+                1.0
+            } else if i % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            }
+        };
         let h = u / n as f64;
         (0..=n).fold([0.0, 0.0], |[x, y], i| {
             let (sin, cos) = f(h * i as f64);
@@ -82,7 +91,10 @@ fn table3_axes() -> Vec<Box<dyn Fn(f64) -> Oriented>> {
             Box::new(move |u: f64| {
                 let (p, (sin, cos)) = (integral(bend, u), maths::sin_cos(c0));
                 let (ty, tx) = maths::sin_cos(c0 + bend[0] * u + bend[1] * u * u);
-                Oriented { point_m: [a[0] + length * (cos * p[0] - sin * p[1]), a[1] + length * (sin * p[0] + cos * p[1])], tangent: [tx, ty] }
+                Oriented {
+                    point_m: [a[0] + length * (cos * p[0] - sin * p[1]), a[1] + length * (sin * p[0] + cos * p[1])],
+                    tangent: [tx, ty],
+                }
             }) as Box<dyn Fn(f64) -> Oriented>
         })
         .collect()
@@ -160,7 +172,11 @@ fn what_the_process_cannot_make_is_missed() {
 fn no_part_says_why() {
     let why = |name: &str, set: &[&str]| export(name, set, &[Format::Dxf]).expect_err("no part");
     let large = why("compliant/lan-table3", &["parts.fillet=20 mm"]);
-    assert!(large.code == "E0518" && large.message.contains("fillet of radius 20 mm") && large.message.contains("the largest that does"), "{}", large.message);
+    assert!(
+        large.code == "E0518" && large.message.contains("fillet of radius 20 mm") && large.message.contains("the largest that does"),
+        "{}",
+        large.message
+    );
     let hinged = why("compliant/lan-table3", &["design.nodes.n1.support=\"pinned\""]);
     assert!(hinged.message.contains("n1") && hinged.message.contains("bearing"), "{}", hinged.message);
     let hole = why("compliant/lan-table3", &["parts.hole=9 mm", "parts.pad=[\"10 mm\", \"8 mm\"]"]);

@@ -77,7 +77,7 @@ impl Image {
     }
 
     fn is_shifted(&self) -> bool {
-        self.shift_m != [0.0; 2]
+        self.shift_m.iter().any(|s| s.abs() > 0.0)
     }
 
     /// Whether a box stays parallel to the axes.

@@ -287,8 +287,8 @@ impl<'a> Sampled<'a> {
     }
 
     fn empty(&mut self) {
-        self.fan.add_all(self.waiting.iter().flat_map(run::Chunk::values));
-        self.spread.add_all(self.waiting.iter().flat_map(run::Chunk::measures));
+        self.fan.add_all(&self.waiting.iter().flat_map(run::Chunk::values));
+        self.spread.add_all(&self.waiting.iter().flat_map(run::Chunk::measures));
         self.waiting.clear();
     }
 

@@ -3,9 +3,9 @@
 use forcewright_base::maths;
 use forcewright_base::units::{Dimension, Unit, format_si};
 use forcewright_beam::{Beam, Image, Joint as BeamJoint, Rotation, Support};
+use forcewright_curves::Profile;
 use forcewright_curves::outline::{AxisPoint, Block, Cap, HalfWidth, Joint, Network, Node, Outline, OutlineError, Strip, Tag};
 use forcewright_curves::walls::{Narrow, narrowest_gap, thinnest_wall};
-use forcewright_curves::Profile;
 use forcewright_model::{Check, CheckState, Hole, NoPart, Part, PartSet, Sense};
 
 use crate::design::Design;
@@ -233,16 +233,14 @@ impl<'a> Drawing<'a> {
         let beams = &self.design.network.beams;
         let thinnest_m = beams.iter().map(|b| b.thickness_at(0.5)).fold(f64::INFINITY, f64::min);
         let fillet_m = self.design.making.fillet_m(thinnest_m);
-        let strips = self.images.iter().zip(&self.ends).flat_map(|(image, ends)| {
-            beams.iter().zip(ends).map(move |(beam, ends)| strip(self.design, beam, *image, *ends))
-        });
+        let strips = self
+            .images
+            .iter()
+            .zip(&self.ends)
+            .flat_map(|(image, ends)| beams.iter().zip(ends).map(move |(beam, ends)| strip(self.design, beam, *image, *ends)));
         Network {
             nodes: self.nodes.iter().map(|p| Node { point_m: *p, fillet_m, cap: Cap::Square }).collect(),
-            blocks: self
-                .solids
-                .iter()
-                .map(|s| Block { corners_m: s.corners_m.clone(), corner_radius_m: 0.0, fillet_m })
-                .collect(),
+            blocks: self.solids.iter().map(|s| Block { corners_m: s.corners_m.clone(), corner_radius_m: 0.0, fillet_m }).collect(),
             strips: strips.collect(),
         }
     }
@@ -265,7 +263,11 @@ impl<'a> Drawing<'a> {
                     let covered_m = beam.shape.length_m() * last as f64 / PROBES as f64;
                     if covered_m > beam.thickness_at(end as f64) + beam.shape.length_m() / PROBES as f64 {
                         return Err(no_part(
-                            format!("the pad or block `{}` would cover {} of beam `{name}`", solid.name, format_si(covered_m, &self.design.units.length, 3)),
+                            format!(
+                                "the pad or block `{}` would cover {} of beam `{name}`",
+                                solid.name,
+                                format_si(covered_m, &self.design.units.length, 3)
+                            ),
                             "make `parts.pad` smaller, turn the end of the beam, or give the beam a node and a body of its own",
                         ));
                     }
@@ -289,7 +291,11 @@ impl<'a> Drawing<'a> {
             });
             if !fits {
                 return Err(no_part(
-                    format!("a hole of {} does not fit into `{}` with a quarter of it around", format_si(diameter_m, &millimetres, 4), solid.name),
+                    format!(
+                        "a hole of {} does not fit into `{}` with a quarter of it around",
+                        format_si(diameter_m, &millimetres, 4),
+                        solid.name
+                    ),
                     "make `parts.pad` larger or `parts.hole` smaller",
                 ));
             }
@@ -325,8 +331,13 @@ impl<'a> Drawing<'a> {
         let (mut message, mut help) = (error.to_string(), "move a node, change the shape, or make the beams thinner there");
         match error {
             OutlineError::Fillet { joint, strips: [a, b], radius_m, largest_m } => {
-                let fits = if *largest_m > 0.0 { format!("the largest that does has {}", show(*largest_m)) } else { "no other does".to_owned() };
-                let beams = if a == b { format!("at beam `{}`", self.beam(*a)) } else { format!("between `{}` and `{}`", self.beam(*a), self.beam(*b)) };
+                let fits =
+                    if *largest_m > 0.0 { format!("the largest that does has {}", show(*largest_m)) } else { "no other does".to_owned() };
+                let beams = if a == b {
+                    format!("at beam `{}`", self.beam(*a))
+                } else {
+                    format!("between `{}` and `{}`", self.beam(*a), self.beam(*b))
+                };
                 message = format!("a fillet of radius {} does not fit {beams} at `{}`; {fits}", show(*radius_m), self.joint(joint));
                 help = "set `parts.fillet`, take a smaller cutter, or let the beams meet at a larger angle";
             }
@@ -335,7 +346,11 @@ impl<'a> Drawing<'a> {
                 help = "move a node, change the shape, or make `parts.pad` smaller";
             }
             OutlineError::TightBend { strip, u, radius_m } => {
-                message = format!("beam `{}` bends with a radius of {} at u = {u:.3}: less than half its thickness", self.beam(*strip), show(*radius_m));
+                message = format!(
+                    "beam `{}` bends with a radius of {} at u = {u:.3}: less than half its thickness",
+                    self.beam(*strip),
+                    show(*radius_m)
+                );
             }
             OutlineError::NoMeeting { strip, block } => {
                 message = format!("beam `{}` does not leave the pad or block `{}`", self.beam(*strip), self.joint(&Joint::Block(*block)));

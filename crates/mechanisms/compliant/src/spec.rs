@@ -414,7 +414,8 @@ impl Describe for Parts {
     fn describe(&mut self, v: &mut dyn Visitor) {
         let length = |key, doc| Param::new(key, doc).of(Dimension::Length);
         v.quantity(
-            &length("fillet", "Radius in inner corners; by default that of the cutter, or else half the thinnest thickness.").above(0.0, 0.1),
+            &length("fillet", "Radius in inner corners; by default that of the cutter, or else half the thinnest thickness.")
+                .above(0.0, 0.1),
             &mut self.fillet,
         );
         v.point(

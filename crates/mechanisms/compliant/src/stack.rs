@@ -77,6 +77,7 @@ impl Stack {
 
 impl<'a> Layers<'a> {
     fn new(curve: &'a ForceCurve, count: u32) -> Self {
+        let layers = (0..count).map(|_| 0.0).collect();
         let count = f64::from(count);
         let place = |i: usize| curve.start() + (curve.end() - curve.start()) * i as f64 / STEPS as f64;
         let largest = |f: &dyn Fn(f64) -> f64| (0..=STEPS).map(|i| f(place(i)).abs()).fold(f64::MIN_POSITIVE, f64::max);
@@ -86,7 +87,7 @@ impl<'a> Layers<'a> {
             travel_m: curve.end() / count,
             stiffest_n_per_m: count * largest(&|x| curve.slope(x)),
             largest_n: largest(&|x| curve.force(x)),
-            at_m: vec![0.0; count as usize],
+            at_m: layers,
         }
     }
 

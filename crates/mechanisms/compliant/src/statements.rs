@@ -1,5 +1,7 @@
 //! What a report says in words: model, limits, sources, warnings.
 
+use std::fmt::Write as _;
+
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_beam::{Beam, Drive, Joints, Theory};
 use forcewright_model::{Citation, Statement, Warning};
@@ -64,7 +66,7 @@ fn copies(design: &Design) -> String {
         layout.copies()
     );
     if layout.layers > 1 {
-        text.push_str(&format!(", the displacement {} times its displacement", layout.layers));
+        let _ = write!(text, ", the displacement {} times its displacement", layout.layers);
     }
     text.push('.');
     text

@@ -300,7 +300,7 @@ impl Dual {
         self.rates.clear();
         self.rates.extend_from_slice(&self.parts[..count]);
         for k in (0..count).rev() {
-            let column = &self.triangle[k * n..k * n + k + 1];
+            let column = &self.triangle[k * n..=k * n + k];
             let rate = self.rates[k] / column[k];
             self.rates[k] = rate;
             add_scaled(&mut self.rates[..k], &column[..k], -rate);
@@ -331,7 +331,7 @@ impl Dual {
             self.triangle.copy_within((k + 1) * n..(k + 2) * n, k * n);
             let (c, s, _) = rotation(self.triangle[k * n + k], self.triangle[k * n + k + 1]);
             // This column now, the later ones where they still are.
-            for column in (k..=k).chain(k + 2..self.held.len() + 1) {
+            for column in (k..=k).chain(k + 2..=self.held.len()) {
                 let pair = &mut self.triangle[column * n + k..column * n + k + 2];
                 (pair[0], pair[1]) = (c * pair[0] + s * pair[1], c * pair[1] - s * pair[0]);
             }

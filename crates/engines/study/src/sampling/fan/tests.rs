@@ -65,9 +65,11 @@ fn many_curves_at_once_are_as_one_after_the_other() {
     };
     let curves: Vec<Vec<f64>> = (0..5000).map(curve).collect();
     let (mut one, mut all) = (Fan::new(stations), Fan::new(stations));
-    curves.iter().for_each(|c| one.add(c));
+    for curve in &curves {
+        one.add(curve);
+    }
     for part in curves.chunks(999) {
-        all.add_all(part.iter().map(Vec::as_slice));
+        all.add_all(&part.iter().map(Vec::as_slice));
     }
     assert_eq!(format!("{one:?}"), format!("{all:?}"));
     assert!(all.curves() == 5000 && all.quantile_error(0) > 0.0 && all.quantile_error(20) == 0.0 && all.station(20).missing > 0);
