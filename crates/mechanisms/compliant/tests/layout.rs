@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Solved, close, design, near, outcome, solve, understand};
+use forcewright_base::maths;
 use forcewright_beam::Status;
 
 /// A bent leg from a clamp to a block that moves down; its force has a maximum after which it falls.
@@ -142,7 +143,7 @@ fn planes_around_an_axis_meet_inside() {
     let half = std::f64::consts::FRAC_PI_4;
     let inner = solved.behaviour.path.points.iter().flat_map(|p| (0..=2000).map(|i| p.beams[0].shape_m(f64::from(i) / 2000.0)[0]));
     let inner_m = inner.fold(f64::INFINITY, f64::min) + 14e-3 - 0.5e-3;
-    let gap = 2.0 * (inner_m * half.sin() - 5e-3 * half.cos());
+    let gap = 2.0 * (inner_m * maths::sin(half) - 5e-3 * maths::cos(half));
     close(solved.get("clearance_min"), gap, 1e-8, "gap");
     // Too near to the axis they overlap.
     assert!(solve(&laid_out("circular = { count = 8, radius = \"8 mm\" }", "1 mm"), &[]).get("clearance_min") < 0.0);

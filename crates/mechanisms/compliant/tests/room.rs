@@ -19,7 +19,7 @@ fn the_least_over_the_travel_is_found() {
         let end = solved.design.load_end;
         let scan = (0..=200).map(|i| {
             let point = solved.behaviour.path.at(end * f64::from(i) / 200.0).unwrap();
-            clearance(&solved.design.network, Some(&point), Some(line)).unwrap().distance_m
+            clearance(&solved.design.network, Some(&point), &[line.into()]).unwrap().distance_m
         });
         let least = scan.fold(f64::INFINITY, f64::min);
         let found = solved.get("clearance_min");
