@@ -21,13 +21,32 @@ pub const EXAMPLES: &[Example] = examples![
     "compliant/tapered-spring",
     "compliant/parallel-guide",
     "compliant/preloaded-guide",
+    "compliant/folded-guide",
+    "compliant/gripper-finger",
+    "compliant/slider-crank",
+    "compliant/constant-force-pair",
+    "compliant/bistable-arch",
+    "compliant/williams-toggle",
     "compliant/lan-table3",
     "compliant/lan-thin",
     "compliant/lan-sub-cfm",
+    "compliant/lan-end-effector",
+    "compliant/lan-two-layers",
+    "compliant/lan-circular",
+    "compliant/lan-end-effector-surface",
     "compliant/optimise-lan-box",
     "compliant/optimise-lan-equal-forces",
     "compliant/tolerance-lan-thin",
 ];
+
+macro_rules! data {
+    ($family:literal: $($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../../../examples/", $family, "/", $name)))),*]
+    };
+}
+
+/// Tables of data that examples name: file names and texts.
+const DATA: &[(&str, &str)] = data!["compliant": "cam-5mm.csv", "cam-3mm.csv"];
 
 /// An example by its name, with or without its family.
 pub fn find(name: &str) -> Option<&'static Example> {
@@ -47,6 +66,11 @@ impl Example {
         line.and_then(|l| l.split('"').next()).unwrap_or("")
     }
 
+    /// The tables of data that it names, in its variants too: file names and texts.
+    pub fn data(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        DATA.iter().filter(|(name, _)| self.text.contains(&format!("\"{name}\""))).copied()
+    }
+
     /// The example that this one extends, if it does.
     pub fn base(&self) -> Option<&'static Self> {
         let line = self.text.lines().find_map(|l| l.strip_prefix("extends = \""))?;
@@ -61,13 +85,15 @@ mod tests {
     #[test]
     fn every_example_file_is_in_the_gallery_and_has_a_title() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-        let mut files = Vec::new();
+        let (mut files, mut data) = (Vec::new(), Vec::new());
         for family in std::fs::read_dir(root).unwrap() {
             let family = family.unwrap();
             for file in std::fs::read_dir(family.path()).unwrap() {
                 let file = file.unwrap().file_name().into_string().unwrap();
                 if let Some(stem) = file.strip_suffix(".toml") {
                     files.push(format!("{}/{stem}", family.file_name().into_string().unwrap()));
+                } else {
+                    data.push(file);
                 }
             }
         }
@@ -76,6 +102,11 @@ mod tests {
         listed.sort();
         assert_eq!(files, listed);
         assert!(EXAMPLES.iter().all(|e| !e.title().is_empty()));
+        data.sort();
+        let mut named: Vec<&str> = EXAMPLES.iter().flat_map(|e| e.data().map(|(name, _)| name)).collect();
+        named.sort_unstable();
+        named.dedup();
+        assert_eq!(data, named, "tables of data that no example names");
         assert_eq!(find("lan-thin").and_then(Example::base).map(|e| e.name), Some("compliant/lan-table3"));
     }
 }

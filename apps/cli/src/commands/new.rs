@@ -30,23 +30,25 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     if let Err(failed) = output::prepare(&folder) {
         return output::write_failed(&failed, false);
     }
-    // What an example extends comes with it.
+    // What an example extends, and the data that it names, come with it.
     let mut wanted: Vec<&Example> = vec![example];
     while let Some(base) = wanted.last().and_then(|e| e.base()) {
         wanted.push(base);
     }
     let force = matches.get_flag("force");
     let mut files = Vec::new();
-    for (index, file) in wanted.iter().enumerate() {
-        let path = folder.join(file.file_name());
-        // A base that is already there, unchanged, is what was asked for.
-        let same = std::fs::read_to_string(&path).is_ok_and(|text| text == file.text);
+    let projects = wanted.iter().map(|e| (e.file_name(), e.text));
+    let data = wanted.iter().flat_map(|e| e.data()).map(|(name, text)| (name.to_owned(), text));
+    for (index, (name, text)) in projects.chain(data).enumerate() {
+        let path = folder.join(&name);
+        // A base, or a table of data, that is already there, unchanged, is what was asked for.
+        let same = std::fs::read_to_string(&path).is_ok_and(|found| found == text);
         if path.exists() && !force && !(same && index > 0) {
             let message = format!("`{}` exists already", path.display());
             output::complain("E0122", &message, "choose another folder with --dir, or overwrite it with --force", false);
             return exit::IO;
         }
-        files.push((file.file_name(), file.text.to_owned()));
+        files.push((name, text.to_owned()));
     }
     if let Err(failed) = output::write_all(&folder, &files) {
         return output::write_failed(&failed, false);

@@ -62,6 +62,8 @@ pub(super) const SPELLINGS: &[(&str, &str)] = &[
     ("hour", "h"),
     ("hours", "h"),
     ("hr", "h"),
+    ("day", "d"),
+    ("days", "d"),
     ("gram", "g"),
     ("grams", "g"),
     ("gr", "g"),

@@ -160,6 +160,12 @@ fn units_as_people_misspell_them() {
 }
 
 #[test]
+fn durations_of_tests_and_of_lives() {
+    let seconds = |text| Quantity::parse(text, Dimension::Time).map(|q| q.si);
+    assert_eq!([seconds("1 d"), seconds("24 h"), seconds("1440 min"), seconds("86400 s")], [const { Ok(86_400.0) }; 4]);
+}
+
+#[test]
 fn nonsense_is_refused() {
     use QuantityError::{DecimalComma, NoUnit, NotANumber, NotFinite};
     let error = |text| Quantity::parse(text, Dimension::Length).unwrap_err();

@@ -137,6 +137,45 @@ impl Fatigue {
     }
 }
 
+/// Stiffness under a lasting load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CreepModulus {
+    /// (Time under a constant load, s; stress over the strain then, Pa), times above 0 and ascending; at least one.
+    pub values: Vec<[f64; 2]>,
+    /// Minimum, typical or measured.
+    pub kind: ValueKind,
+    /// As [`Property::source`].
+    pub source: String,
+}
+
+impl CreepModulus {
+    /// The keys in [`CreepModulus::source`], one by one.
+    pub fn source_keys(&self) -> impl Iterator<Item = &str> {
+        source_keys(&self.source)
+    }
+
+    /// Creep modulus after a time, Pa: linear in the logarithm of the time between two values that are given; absent outside, where
+    /// nothing was measured.
+    ///
+    /// ```
+    /// use forcewright_elements::materials;
+    ///
+    /// let pom = materials::find("POM-C").and_then(|m| m.creep_modulus.as_ref()).expect("given");
+    /// let hour = 3600.0;
+    /// assert_eq!((pom.modulus_pa(hour), pom.modulus_pa(0.5 * hour)), (Some(2.5e9), None));
+    /// ```
+    pub fn modulus_pa(&self, time_s: f64) -> Option<f64> {
+        let next = self.values.iter().position(|[at, _]| *at >= time_s)?;
+        let [after, there] = self.values[next];
+        if after <= time_s {
+            return Some(there);
+        }
+        let [before, here] = *self.values.get(next.checked_sub(1)?)?;
+        let part = forcewright_base::maths::ln(time_s / before) / forcewright_base::maths::ln(after / before);
+        Some(here + (there - here) * part)
+    }
+}
+
 fn source_keys(source: &str) -> impl Iterator<Item = &str> {
     source.split(',').map(str::trim)
 }
@@ -159,8 +198,12 @@ pub struct Material {
     /// Stress at which linear elasticity must be given up, Pa: 0.2 % proof stress of metals, first maximum of the tensile curve of polymers
     /// (which lies far outside their linear range), static bending limit of spring steel; `note` says which.
     pub yield_stress_pa: Option<Property>,
+    /// Largest stress of the tensile test, Pa: Rm of metals, and the first maximum of polymers that yield before they break.
+    pub tensile_strength_pa: Option<Property>,
     /// Endured stress, if a source gives it.
     pub fatigue: Option<Fatigue>,
+    /// Stiffness under a lasting load, if a source gives it; of classes that creep.
+    pub creep_modulus: Option<CreepModulus>,
     /// What a user should know before trusting the numbers: creep, moisture, orientation, condition.
     pub note: Option<String>,
     /// All sources of this entry, keys of `REFERENCES.bib`, each once, in the order of the properties.
@@ -180,7 +223,18 @@ impl Material {
     }
 
     fn properties(&self) -> impl Iterator<Item = &Property> {
-        [&self.young_modulus_pa, &self.poisson_ratio, &self.density_kg_per_m3, &self.yield_stress_pa].into_iter().flatten()
+        [&self.young_modulus_pa, &self.poisson_ratio, &self.density_kg_per_m3, &self.yield_stress_pa, &self.tensile_strength_pa]
+            .into_iter()
+            .flatten()
+    }
+
+    /// Young's modulus that is left under a lasting load after a time, as part of that at its beginning; 1 for classes that do not creep,
+    /// absent where the catalogue does not say.
+    pub fn modulus_left(&self, time_s: f64) -> Option<f64> {
+        if !self.class.creeps() {
+            return Some(1.0);
+        }
+        Some(self.creep_modulus.as_ref()?.modulus_pa(time_s)? / self.young_modulus_pa.as_ref()?.value)
     }
 
     /// Whether `query` names this material, comparing as [`find`] does.
@@ -262,6 +316,41 @@ mod tests {
             assert!(fatigue.cycles >= 1e5, "{}", m.name);
             assert!(fatigue.stress_ratio.is_none_or(|ratio| (-1.0..1.0).contains(&ratio)), "{}", m.name);
         }
+    }
+
+    #[test]
+    fn tensile_strength_lies_at_yield_or_above() {
+        for m in catalogue().iter().filter(|m| m.tensile_strength_pa.is_some()) {
+            let (strength, yields) = (value(m.tensile_strength_pa.as_ref()), value(m.yield_stress_pa.as_ref()));
+            assert!((1.0..1.5).contains(&(strength / yields)), "{}: {strength} {yields}", m.name);
+        }
+        // What can be judged for fatigue needs both.
+        assert!(catalogue().iter().all(|m| m.fatigue.is_none() || m.tensile_strength_pa.is_some()));
+    }
+
+    #[test]
+    fn creep_moduli_fall_and_are_not_drawn_out() {
+        let with_creep: Vec<_> = catalogue().iter().filter(|m| m.creep_modulus.is_some()).collect();
+        assert!(with_creep.len() >= 2);
+        for m in with_creep {
+            let creep = m.creep_modulus.as_ref().unwrap();
+            assert!(m.class.creeps(), "{}", m.name);
+            assert!(creep.values.windows(2).all(|w| w[0][0] < w[1][0] && w[0][1] > w[1][1]), "{}", m.name);
+            assert!(creep.values.iter().all(|[t, e]| *t > 0.0 && *e > 0.0 && *e < value(m.young_modulus_pa.as_ref())), "{}", m.name);
+        }
+        let hour = 3600.0;
+        let pom = find("POM-C").unwrap();
+        // As printed, and half way in log t: √1000 h.
+        for (time, modulus) in [(hour, 2.5e9), (31.622_776_601_683_793 * hour, 1.9e9), (1000.0 * hour, 1.3e9)] {
+            let found = pom.modulus_left(time).unwrap() * 2.85e9;
+            assert!((found / modulus - 1.0).abs() < 1e-12, "{time}: {found}");
+        }
+        assert_eq!((pom.modulus_left(0.9 * hour), pom.modulus_left(1001.0 * hour), pom.modulus_left(f64::NAN)), (None, None, None));
+        assert_eq!((find("C75S").unwrap().modulus_left(1e9), find("PEEK").unwrap().modulus_left(hour)), (Some(1.0), None));
+        // A single value holds at its time only.
+        let nylon = find("PA66").unwrap();
+        assert_eq!(nylon.modulus_left(999.0 * hour), None);
+        assert!((nylon.modulus_left(1000.0 * hour).unwrap() - 0.54 / 1.4).abs() < 1e-15);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::design::Design;
 use crate::force_curve::{Extrema, ForceCurve, Interval, Turn};
 use crate::metrics::METRICS;
 use crate::room::{Margin, Nearest, gap_around_m, margin, nearest};
+use crate::scenario::SurfaceRun;
 use crate::stack::Stack;
 use crate::sway::Sway;
 
@@ -344,6 +345,8 @@ pub struct Measured {
     pub nearest: Option<Nearest>,
     /// Smallest distance to the envelope, where one is required.
     pub margin: Option<Margin>,
+    /// What happens along the surface of the scenario, where there is one.
+    pub surface: Option<SurfaceRun>,
 }
 
 impl Measured {
@@ -356,6 +359,19 @@ impl Measured {
     /// A metric by its index.
     pub fn value(&self, index: usize) -> Option<f64> {
         self.values.get(index).copied().flatten()
+    }
+
+    /// The way along a surface: it needs the curve as far as the surface is high, and layers that move alike.
+    fn surface(&mut self, design: &Design, behaviour: &Behaviour, curve: &ForceCurve) {
+        let apart_m = behaviour.stack.as_ref().and_then(|s| s.apart_from_m).unwrap_or(f64::INFINITY);
+        let run = design.surface.as_ref().map(|surface| SurfaceRun::of(surface, curve, curve.end().min(apart_m)));
+        let range = run.as_ref().and_then(SurfaceRun::axial_n);
+        self.set("contact_force_max", range.map(|[_, most]| most));
+        self.set("contact_force_min", range.map(|[least, _]| least));
+        self.set("contact_force_mean", run.as_ref().and_then(SurfaceRun::mean_n));
+        self.set("contact_force_spread", range.map(|[least, most]| (most - least) / (most + least)).filter(|s| s.is_finite()));
+        self.set("transverse_force_max", run.as_ref().and_then(SurfaceRun::transverse_n));
+        self.surface = run;
     }
 
     fn set(&mut self, name: &str, value: impl Into<Option<f64>>) {
@@ -391,6 +407,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m.loaded = if one_yield { m.stress } else { behaviour.worst_stress(|beam| design.yield_pa(beam).unwrap_or(f64::INFINITY)) };
     m.nearest = nearest(design, behaviour);
     m.margin = design.requirements.as_ref().and_then(|r| r.envelope).and_then(|envelope| margin(behaviour, &envelope));
+    m.surface(design, behaviour, curve);
     // The rest is about the whole travel: a path that ends before has no such numbers.
     if !behaviour.whole {
         return m;
@@ -471,7 +488,14 @@ pub(crate) fn display_unit(design: &Design, index: usize) -> Unit {
         D::Stiffness => design.units.stiffness.clone(),
         D::Energy => named("mJ"),
         D::Mass => named("g"),
-        D::Ratio if info.name == "range_ratio" || info.name == "flat_ratio" || info.name == "band_ratio" => named("%"),
+        D::Ratio
+            if info.name == "range_ratio"
+                || info.name == "flat_ratio"
+                || info.name == "band_ratio"
+                || info.name == "contact_force_spread" =>
+        {
+            named("%")
+        }
         other => Unit::si(other),
     })
 }

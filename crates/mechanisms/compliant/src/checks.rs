@@ -1,5 +1,7 @@
 //! Requirements against what was found.
 
+mod endurance;
+
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_beam::Theory;
 use forcewright_model::{Check, CheckState, Sense};
@@ -8,6 +10,7 @@ use crate::analysis::{Behaviour, Measured, display_unit};
 use crate::design::{Design, Requirements, StressLimit};
 use crate::loads::Control;
 use crate::metrics::METRICS;
+use crate::scenario;
 
 /// Every requirement of the project, in the order of the language.
 pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Check> {
@@ -20,6 +23,8 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.extend(context.stiffness());
     all.extend(context.envelope());
     all.extend(context.layers());
+    all.extend(context.fatigue());
+    all.extend(context.hold());
     all.extend(context.limits());
     all
 }
@@ -439,6 +444,9 @@ impl Context<'_> {
 
     /// What mends a broken limit on a metric.
     fn limit_fix(&self, name: &str, broken: bool) -> String {
+        if let Some(fix) = scenario::fix(self.design, self.measured, name, broken) {
+            return fix;
+        }
         let sways = self.behaviour.sway.and_then(|s| s.from_m).filter(|_| name == LATERAL);
         let Some(from) = sways else { return "change the design, or relax the limit".to_owned() };
         let from = format_si(from, &self.design.units.displacement, 4);
@@ -458,7 +466,10 @@ impl Context<'_> {
                     Some(sway) if info.name == LATERAL => {
                         (sway.least_n_per_m, !self.behaviour.whole, sense == Sense::AtLeast && sway.least_n_per_m.is_none())
                     }
-                    _ => (self.measured.value(*index), false, false),
+                    _ => {
+                        let broken = sense == Sense::AtMost && scenario::never_ends(self.measured, info.name);
+                        (self.measured.value(*index), false, broken)
+                    }
                 };
                 let comparison = Comparison {
                     code: "COMP006",
@@ -472,7 +483,7 @@ impl Context<'_> {
                     scale: None,
                     basis: info.doc.to_owned(),
                     fix: self.limit_fix(info.name, broken),
-                    missing: match info.name {
+                    missing: scenario::missing(self.design, self.measured, info.name).unwrap_or_else(|| match info.name {
                         "mass" => "the density of a material is not known; give `density` in its table".to_owned(),
                         _ if !self.behaviour.whole => self.unreached(),
                         LATERAL if value.is_none() && !broken && self.behaviour.sway.is_some() => {
@@ -481,7 +492,7 @@ impl Context<'_> {
                         "envelope_margin" => "there is no envelope; give `requirements.envelope`".to_owned(),
                         "clearance_min" => "no two surfaces of this design face each other; remove the limit".to_owned(),
                         _ => "the design has no such value; see the status and the meaning of the metric".to_owned(),
-                    },
+                    }),
                     partial,
                     broken,
                 };

@@ -6,12 +6,14 @@ use forcewright_beam::{Beam, Joint, Joints, Network, Node, Point, Section, Setti
 use forcewright_contract::describe::{Along, Located, Member, Origin, Slot};
 
 use crate::bodies::{self, Body, DrawnNode, Grouping, find_node};
+use crate::endurance::{FatigueLimit, HoldLimit};
 use crate::layout::{self, Layout, Mirror, parse_mirror};
 use crate::loads::{self, Control, Loads};
 use crate::material::{Material, check_complete, fill_materials, typed_material};
 use crate::metrics::METRICS;
 use crate::parts::Making;
 use crate::rules::{check_held, check_joints, check_mirror, check_network};
+use crate::scenario;
 use crate::spec::{self, Spec};
 
 /// A design, ready to be solved. SI units.
@@ -55,6 +57,8 @@ pub struct Design {
     pub accuracy: f64,
     /// How it is made.
     pub making: Making,
+    /// The surface that its tip is drawn along.
+    pub surface: Option<scenario::Surface>,
     /// What it must do; `None` if the project asks for nothing.
     pub requirements: Option<Requirements>,
     /// Units in which people are shown results.
@@ -111,6 +115,10 @@ pub struct Requirements {
     pub travel_m: Option<f64>,
     /// What the stress is held against.
     pub stress: Option<StressLimit>,
+    /// How often it goes through its travel, and with which safety.
+    pub fatigue: Option<FatigueLimit>,
+    /// How long it is held, and what must be left of its force.
+    pub hold: Option<HoldLimit>,
     /// Least slope, N/m.
     pub stiffness_min: f64,
     /// Largest slope, N/m.
@@ -219,6 +227,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         check_mirror(&network, &drawn, mirror, spec, diagnostics);
     }
     let layout = layout::resolve(spec, mirror, &network, &loads, diagnostics);
+    let surface = scenario::resolve(spec, &network, &loads, diagnostics);
     if diagnostics.has_errors() {
         return None;
     }
@@ -243,6 +252,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         joints,
         accuracy: si(spec.model.accuracy.as_ref())?,
         making: making_of(spec, diagnostics),
+        surface,
         requirements,
         units,
     })
@@ -360,6 +370,8 @@ fn requirements_of(spec: &Spec, yield_is_known: bool, diagnostics: &mut Diagnost
         force: si(requirements.force.band.as_ref()).map(|band| (band, si(requirements.force.nominal.as_ref()))),
         travel_m: si(requirements.travel.as_ref()),
         stress,
+        fatigue: FatigueLimit::asked(&requirements.fatigue),
+        hold: HoldLimit::asked(&requirements.hold),
         stiffness_min: si(requirements.stiffness.min.as_ref())?,
         stiffness_max: si(requirements.stiffness.max.as_ref()),
         limits,

@@ -45,6 +45,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "Layers in series carry the same force and share the displacement. That all move alike is an equilibrium, but a stable one only while the force of a layer rises with its displacement: where it falls, one layer runs ahead and the others spring back, smoothly or with a jump. Found by following the layers slowly from minimum to minimum of their energy Σ W(δᵢ) at Σ δᵢ = Δ, with an imperfection of a millionth of the travel; the value is the displacement at which they differ by more than 1 % of the travel of one.\n\nBeyond, the force stays between the smallest and the largest that the curve of one layer has there, but positions jump and the way back differs from the way forth: the report shows both. The metrics are those of layers that move alike. Shapes whose force never falls (`stiffness = { min = \"0 N/mm\" }`) do not part.",
     ),
     code(
+        "COMP009",
+        "fatigue",
+        "`requirements.fatigue = { cycles = 1e6, safety_factor = 1.3 }` asks for so many ways from rest through the travel and back. Every fibre, on both faces of every beam and at all places along it, goes through a range of stress between the lowest and the highest that it has on the way: amplitude σ_a, half of it, and mean σ_m. The check reports the smallest n of 1/n = σ_a/S_e + max(σ_m, 0)/R_m: Goodman's line (J. Goodman, Mechanics Applied to Engineering, 1899; the modified Goodman line of Budynas & Nisbett, Shigley's Mechanical Engineering Design, chapter 6). R_m is the tensile strength, S_e the amplitude endured without a mean stress, by the same line from the amplitude and stress ratio of the data. A mean in compression counts as none.\n\nData are those of the catalogue or `material.fatigue = { amplitude = \"31 MPa\", cycles = 1e6, ratio = -1 }` and `material.tensile_strength`. Fewer cycles than tested are judged by the stress endured in the test. Not assessed without an endured stress, for more cycles than it is known for, and without a tensile strength.\n\nData are of smooth specimens: notches, milled or printed surfaces, corners of joints, temperature and the scatter of lives are not in them, and a typical value is that of half of the parts. The safety factor is for these.",
+    ),
+    code(
+        "COMP010",
+        "force left under a lasting displacement",
+        "`requirements.hold = { time = \"1000 h\", force_left = \"40 %\" }`: a displacement is held at room temperature for that time. Plastics creep, and of the force at that displacement there is left about E_c(t)/E, the creep modulus (stress over the strain after a time, ISO 899-1) over Young's modulus. At all displacements alike: force goes with the modulus as long as all beams are of one material. The catalogue has creep moduli at some times; between two the modulus is taken as linear in the logarithm of time, outside it is not assessed. Both moduli are those of the catalogue, also where the project overrides `young_modulus`.\n\nStrictly what a held displacement needs is the relaxation modulus, which is a little lower than the creep modulus: by less than 2 % for a modulus that halves in three decades of time (a power law t⁻ⁿ has sin(nπ)/(nπ)). Creep moduli are measured at small strain; at high stress plastics creep more.\n\nMetals do not creep at room temperature: all of the force is left. Springs under high stress still settle by some per cent, which is not in this. Not assessed: materials without data, beams that creep differently, and given forces, under which a displacement grows instead.",
+    ),
+    code(
         "COMP011",
         "thinnest wall of the part",
         "The diameter of the smallest circle that fits into the material between two faces of the outline, holes included, against `process.wall_min`. Beams are as thick there as the design says; walls between a hole and an edge count too.",
@@ -197,5 +207,35 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0511",
         "a requirement that a study does not look at",
         "Studies compute what they need many thousand times, and leave out what would need the whole analysis. A search checks such a requirement at its end, in the full analysis of the design found. A tolerance analysis does not count it: its yield is that of all other requirements. `solve` checks everything.",
+    ),
+    code(
+        "E0520",
+        "not the profile of a surface",
+        "`scenario.surface.profile`, or the file of `profile_file`, gives the height of a surface at ascending transverse positions, at least two. Each position stands once: a tip climbs no vertical step, so write the slope that the edge has, or give the tip a `tip_radius` and the step a width.",
+    ),
+    code(
+        "E0521",
+        "a scenario that the design cannot play",
+        "Along a surface the mechanism follows its force curve from rest. So there is one load, it prescribes a displacement (`travel`), and its node is held as the linear bearings of the tip hold it: `support = \"slider\"` along the load, without turning.",
+    ),
+    code(
+        "W0520",
+        "the tip locks",
+        "Where the surface rises steeply, friction in the bearings and at the tip grows with the transverse force faster than that force lifts the tip. With the friction μ of the tip and the drag m of the guide (the coefficient of its bearings times 1 + 2a/b for two of them at a distance b, the tip a beyond) the steepest rise is tan α = (1 − m·μ)/(m + μ); beyond it no transverse force moves the stage, however large. Curves end there, metrics of the contact have no value, and limits from above on them are missed.",
+    ),
+    code(
+        "W0521",
+        "the tip does not touch",
+        "The surface lies lower than the tip of the unloaded mechanism reaches. The contact force is zero there; smallest force, mean and spread are those of the way in contact, at whose ends the force goes to zero.",
+    ),
+    code(
+        "W0522",
+        "the surface is too high",
+        "Preload and height add up to more displacement than the path of the mechanism has: beyond its `travel`, beyond the place at which a real part leaves the path, or beyond that at which layers in series part. The metrics of the contact have no value.",
+    ),
+    code(
+        "W0523",
+        "the mechanism lets go of the surface",
+        "The force over the displacement changes its sign: the mechanism would pull its tip away and come to rest in another shape. The metrics of the contact have no value.",
     ),
 ];

@@ -65,7 +65,7 @@ fn force_label(design: &Design) -> String {
 }
 
 /// Every curve of a result.
-pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
+pub(crate) fn curves(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Curve> {
     let points = &behaviour.path.points;
     let x: Vec<f64> = points.iter().map(|p| behaviour.delta_m(p)).collect();
     let one = |name: &'static str, label: &str, dimension: Dimension, display: Unit, y: Vec<f64>| Curve {
@@ -77,12 +77,14 @@ pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
     let all = |f: fn(&Behaviour, &Point) -> f64| points.iter().map(|p| f(behaviour, p)).collect::<Vec<_>>();
     let millijoule = Unit::parse("mJ").unwrap_or_else(|_| Unit::si(Dimension::Energy));
     let stress: Vec<f64> = points.iter().map(|p| p.peak_stress().map_or(f64::NAN, |(_, s)| s.stress_pa)).collect();
-    vec![
+    let mut curves = vec![
         Curve { y: force_axis(design), ..one("force", "Force F", Dimension::Force, design.units.force.clone(), all(Behaviour::force_n)) },
         one("stiffness", "Stiffness dF/dΔ", Dimension::Stiffness, design.units.stiffness.clone(), all(Behaviour::stiffness_n_per_m)),
         Curve { y: stress_axis(design), ..one("stress", "", Dimension::Stress, design.units.stress.clone(), stress) },
         one("energy", "Elastic energy U", Dimension::Energy, millijoule, all(Behaviour::energy_j)),
-    ]
+    ];
+    curves.extend(crate::scenario::curves(design, measured));
+    curves
 }
 
 /// Every figure of a report.
@@ -95,6 +97,7 @@ pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measure
     }];
     if behaviour.curve.is_some() {
         all.push(force_figure(design, behaviour, measured));
+        all.extend(crate::scenario::figures(design, measured));
         all.extend(behaviour.stack.as_ref().filter(|s| s.apart_from_m.is_some()).map(|s| layers_figure(design, behaviour, s)));
         all.push(stress_figure(design, behaviour, measured));
         if design.network.beams.len() > 1 {

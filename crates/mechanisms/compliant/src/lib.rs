@@ -8,6 +8,7 @@ mod bodies;
 mod checks;
 mod crossing;
 mod design;
+mod endurance;
 mod explain;
 mod figures;
 mod force_curve;
@@ -19,6 +20,7 @@ mod parts;
 mod reproduce;
 mod room;
 mod rules;
+mod scenario;
 mod scene;
 mod spec;
 mod stack;
@@ -39,13 +41,15 @@ pub use analysis::{Behaviour, LargestStress, Measured, Snap, measure};
 pub use bodies::{Body, DrawnNode};
 pub use crossing::{Crossing, first_crossing};
 pub use design::{Design, DisplayUnits, Envelope, Requirements, StressLimit};
+pub use endurance::{FatigueLimit, Fibre, Goodman, HoldLimit};
 pub use force_curve::{Extrema, ForceCurve, Interval, Turn};
 pub use layout::{Circle, Layout, Mirror, Rows};
 pub use loads::Control;
-pub use material::Material;
+pub use material::{Endured, Material};
 pub use metrics::{METRICS, MetricInfo};
 pub use parts::Making;
 pub use room::{Margin, Nearest, margin, nearest};
+pub use scenario::{Contact, Flat, Join, Pass, Profile, Stop, Surface, SurfaceRun, TipPath, Touch, Why};
 pub use spec::Spec;
 pub use stack::Stack;
 pub use sway::Sway;
@@ -76,11 +80,11 @@ impl Mechanism for Compliant {
         let outcome = Outcome {
             mechanism: Self::ID,
             title: design.title.clone(),
-            status: status::status(design, &behaviour),
+            status: status::status(design, &behaviour, &measured),
             error_estimate: behaviour.path.error_estimate.map(|e| e.max(behaviour.interpolation_error)),
             metrics: analysis::metrics(design, &measured),
             checks: checks::checks(design, &trusted, &measured),
-            curves: figures::curves(design, &behaviour),
+            curves: figures::curves(design, &behaviour, &measured),
             counters: vec![
                 count("stations", behaviour.path.points.len() as u64),
                 count("polynomial_degree", behaviour.path.degree as u64),

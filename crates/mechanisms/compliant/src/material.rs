@@ -16,14 +16,33 @@ pub struct Material {
     pub name: Option<String>,
     /// Yield stress, Pa, if known.
     pub yield_pa: Option<f64>,
+    /// Largest stress of the tensile test, Pa, if known.
+    pub tensile_pa: Option<f64>,
+    /// What it endures, if known.
+    pub fatigue: Option<Endured>,
     /// Density, kg/m³, if known.
     pub density_kg_per_m3: Option<f64>,
+    /// Its entry of the catalogue, if it names one.
+    pub entry: Option<&'static materials::Material>,
     /// Where its data come from, in words.
     pub origin: String,
     /// Keys of the works that catalogue values were taken from.
     pub sources: Vec<&'static str>,
     /// What the catalogue says about it.
     pub note: Option<&'static str>,
+}
+
+/// A stress that a material endures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Endured {
+    /// Amplitude, half the range, Pa.
+    pub amplitude_pa: f64,
+    /// Number of cycles.
+    pub cycles: f64,
+    /// Lowest over highest stress of a cycle, if known.
+    pub stress_ratio: Option<f64>,
+    /// Where this is from, in words.
+    pub origin: String,
 }
 
 /// The materials of a design, and those of its beams.
@@ -76,7 +95,10 @@ pub(crate) fn fill_materials(spec: &mut Spec, diagnostics: &mut Diagnostics) -> 
         let origin = fill_material(material, diagnostics);
         Some(Material {
             yield_pa: si(material.yield_stress.as_ref()),
+            tensile_pa: si(material.tensile_strength.as_ref()),
+            fatigue: endured(material),
             density_kg_per_m3: si(material.density.as_ref()),
+            entry: catalogue_entry(material),
             origin,
             sources: material_sources(material),
             note: catalogue_entry(material).and_then(|m| m.note.as_deref()),
@@ -139,12 +161,14 @@ fn fill_material(material: &mut spec::Material, diagnostics: &mut Diagnostics) -
         fill(&mut material.young_modulus, found.young_modulus_pa.as_ref(), "GPa");
         fill(&mut material.poisson_ratio, found.poisson_ratio.as_ref(), "");
         fill(&mut material.yield_stress, found.yield_stress_pa.as_ref(), "MPa");
+        fill(&mut material.tensile_strength, found.tensile_strength_pa.as_ref(), "MPa");
         fill(&mut material.density, found.density_kg_per_m3.as_ref(), "kg/m^3");
         let mut overridden = Vec::new();
         for (what, slot, property, symbol) in [
             ("young_modulus", &material.young_modulus, &found.young_modulus_pa, "GPa"),
             ("poisson_ratio", &material.poisson_ratio, &found.poisson_ratio, "1"),
             ("yield_stress", &material.yield_stress, &found.yield_stress_pa, "MPa"),
+            ("tensile_strength", &material.tensile_strength, &found.tensile_strength_pa, "MPa"),
             ("density", &material.density, &found.density_kg_per_m3, "kg/m^3"),
         ] {
             if let (Some(Located { origin: Origin::File, value, .. }), Some(property), Ok(unit)) = (slot, property, Unit::parse(symbol)) {
@@ -159,6 +183,23 @@ fn fill_material(material: &mut spec::Material, diagnostics: &mut Diagnostics) -
     origin
 }
 
+/// What it endures by the project file, else by the catalogue.
+fn endured(material: &spec::Material) -> Option<Endured> {
+    let typed = &material.fatigue;
+    if typed.present.is_some() {
+        return Some(Endured {
+            amplitude_pa: si(typed.amplitude.as_ref())?,
+            cycles: si(typed.cycles.as_ref())?,
+            // The cautious reading: pulsating data taken for reversed ones ask for more.
+            stress_ratio: Some(si(typed.ratio.as_ref()).unwrap_or(-1.0)),
+            origin: "project file".to_owned(),
+        });
+    }
+    let known = catalogue_entry(material)?.fatigue.as_ref()?;
+    let origin = format!("{}, {}", known.kind, known.source);
+    Some(Endured { amplitude_pa: known.amplitude_pa, cycles: known.cycles, stress_ratio: known.stress_ratio, origin })
+}
+
 /// The entry that the project names.
 fn catalogue_entry(material: &spec::Material) -> Option<&'static materials::Material> {
     materials::find(&material.catalogue.as_ref()?.value)
@@ -171,6 +212,7 @@ fn material_sources(material: &spec::Material) -> Vec<&'static str> {
         (&material.young_modulus, &entry.young_modulus_pa),
         (&material.poisson_ratio, &entry.poisson_ratio),
         (&material.yield_stress, &entry.yield_stress_pa),
+        (&material.tensile_strength, &entry.tensile_strength_pa),
         (&material.density, &entry.density_kg_per_m3),
     ];
     let from_catalogue = |slot: &Slot<Quantity>| matches!(slot, Some(Located { origin: Origin::Catalogue(_), .. }));

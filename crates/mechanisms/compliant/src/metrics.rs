@@ -61,4 +61,14 @@ pub const METRICS: &[MetricInfo] = &[
         false,
         "Smallest distance of the surfaces of the drawn beams to the envelope, at rest and over the travel.",
     ),
+    metric("contact_force_max", Dimension::Force, true, "Largest contact force along the guide, over the way in contact with the surface."),
+    metric(
+        "contact_force_min",
+        Dimension::Force,
+        true,
+        "Smallest contact force along the guide, over the way in contact with the surface.",
+    ),
+    metric("contact_force_mean", Dimension::Force, false, "Mean contact force along the guide, over the way in contact with the surface."),
+    metric("contact_force_spread", Dimension::Ratio, true, "(max − min)/(max + min) of the contact force along the guide."),
+    metric("transverse_force_max", Dimension::Force, false, "Largest force with which the stage moves the tip along the surface."),
 ];

@@ -7,6 +7,7 @@ use forcewright_contract::header::Header;
 use forcewright_contract::studies::Studies;
 
 use crate::metrics::METRICS;
+use crate::scenario::Scenario;
 
 /// Everything that a project file can say.
 #[derive(Debug, Default)]
@@ -27,6 +28,8 @@ pub struct Spec {
     pub(crate) parts: Section<Parts>,
     /// `[load]`, or `[[load]]` in order
     pub(crate) load: Vec<Member<Load>>,
+    /// `[scenario]`
+    pub(crate) scenario: Section<Scenario>,
     /// `[model]`
     pub(crate) model: Section<Model>,
     /// `[optimise]` and `[tolerance]`
@@ -39,6 +42,8 @@ pub(crate) struct Requirements {
     pub force: Section<ForceRequirement>,
     pub travel: Slot<Quantity>,
     pub stress: Section<StressRequirement>,
+    pub fatigue: Section<FatigueRequirement>,
+    pub hold: Section<HoldRequirement>,
     pub stiffness: Section<StiffnessRequirement>,
     pub envelope: Section<Envelope>,
     pub limits: Section<Limits>,
@@ -63,6 +68,20 @@ pub(crate) struct ForceRequirement {
 pub(crate) struct StressRequirement {
     pub safety_factor: Slot<Quantity>,
     pub max: Slot<Quantity>,
+}
+
+/// How often it goes through its travel.
+#[derive(Debug, Default)]
+pub(crate) struct FatigueRequirement {
+    pub cycles: Slot<Quantity>,
+    pub safety_factor: Slot<Quantity>,
+}
+
+/// How long it is held, and how much of its force must be left then.
+#[derive(Debug, Default)]
+pub(crate) struct HoldRequirement {
+    pub time: Slot<Quantity>,
+    pub force_left: Slot<Quantity>,
 }
 
 /// Which slopes of the force are allowed.
@@ -107,7 +126,17 @@ pub(crate) struct Material {
     pub young_modulus: Slot<Quantity>,
     pub poisson_ratio: Slot<Quantity>,
     pub yield_stress: Slot<Quantity>,
+    pub tensile_strength: Slot<Quantity>,
     pub density: Slot<Quantity>,
+    pub fatigue: Section<FatigueStrength>,
+}
+
+/// What a material endures.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FatigueStrength {
+    pub amplitude: Slot<Quantity>,
+    pub cycles: Slot<Quantity>,
+    pub ratio: Slot<Quantity>,
 }
 
 /// How it is made.
@@ -266,7 +295,6 @@ const STUDY: &str = "it belongs to a study that this version does not have; `sol
 const RESERVED_SECTIONS: &[Reserved] = &[
     Reserved { key: "measurements", instead: STUDY, ignored: true },
     Reserved { key: "calibrate", instead: STUDY, ignored: true },
-    Reserved { key: "scenario", instead: "scenarios are not available yet; `solve` gives the force over the displacement", ignored: true },
     Reserved {
         key: "environment",
         instead: "compliant mechanisms are solved without gravity, at the temperature of the material data",
@@ -295,6 +323,7 @@ impl Describe for Spec {
             Form::Stages,
             &mut self.load,
         );
+        self.scenario.describe(v, &Param::new("scenario", "What a robot does with it."));
         self.model.describe(v, &Param::new("model", "Which equations are solved, and how well."));
         self.studies.describe(v);
         v.reserved(RESERVED_SECTIONS);
@@ -311,6 +340,9 @@ impl Describe for Requirements {
             &mut self.travel,
         );
         self.stress.describe(v, &Param::new("stress", "Stress allowed over the whole travel."));
+        self.fatigue.describe(v, &Param::new("fatigue", "How often it goes from rest through the whole travel and back."));
+        self.hold
+            .describe(v, &Param::new("hold", "How long a displacement is held, at room temperature, and how much force is left then."));
         self.stiffness
             .describe(v, &Param::new("stiffness", "Slope dF/dΔ over the whole travel; without this section, no negative stiffness."));
         self.envelope.describe(
@@ -338,6 +370,22 @@ impl Describe for StressRequirement {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.quantity(&Param::new("safety_factor", "Yield stress over the largest stress.").within(0.1, 100.0), &mut self.safety_factor);
         v.quantity(&Param::new("max", "Largest stress, instead of a safety factor.").of(Dimension::Stress).above(0.0, 1e12), &mut self.max);
+    }
+}
+
+impl Describe for FatigueRequirement {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.quantity(&Param::new("cycles", "Times there and back.").within(1.0, 1e12).required(), &mut self.cycles);
+        let factor = Param::new("safety_factor", "What is endured over what is there, by Goodman's line.");
+        v.quantity(&factor.within(0.1, 100.0).default("1"), &mut self.safety_factor);
+    }
+}
+
+impl Describe for HoldRequirement {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.quantity(&Param::new("time", "How long.").of(Dimension::Time).above(0.0, 1e10).required(), &mut self.time);
+        let left = Param::new("force_left", "Least force after that time, relative to that at its beginning.");
+        v.quantity(&left.above(0.0, 1.0).required(), &mut self.force_left);
     }
 }
 
@@ -391,7 +439,20 @@ impl Describe for Material {
             &mut self.poisson_ratio,
         );
         v.quantity(&Param::new("yield_stress", "Yield stress σ_y.").of(Dimension::Stress).above(0.0, 1e11), &mut self.yield_stress);
+        let strength = Param::new("tensile_strength", "Largest stress of the tensile test; only the check of fatigue uses it.");
+        v.quantity(&strength.of(Dimension::Stress).above(0.0, 1e11), &mut self.tensile_strength);
         v.quantity(&Param::new("density", "Density.").of(Dimension::Density).above(0.0, 3e4), &mut self.density);
+        self.fatigue.describe(v, &Param::new("fatigue", "A stress that it endures, instead of that of the catalogue."));
+    }
+}
+
+impl Describe for FatigueStrength {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let amplitude = Param::new("amplitude", "Amplitude of the stress, half its range.");
+        v.quantity(&amplitude.of(Dimension::Stress).above(0.0, 1e11).required(), &mut self.amplitude);
+        v.quantity(&Param::new("cycles", "Cycles endured.").within(1.0, 1e12).required(), &mut self.cycles);
+        let ratio = Param::new("ratio", "Lowest over highest stress of a cycle: 0 is pulsating, -1 fully reversed, as without this key.");
+        v.quantity(&ratio.within(-1.0, 0.95), &mut self.ratio);
     }
 }
 

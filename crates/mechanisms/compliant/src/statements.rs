@@ -34,7 +34,7 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
         ),
     };
     let copies = copies(design);
-    vec![
+    let mut all = vec![
         beams,
         statement("Network", format!("{} {}{copies}", joints(design), bodies(design))),
         statement("Loads", loads(design)),
@@ -47,7 +47,9 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
             "Bending and, in the geometrically exact model, axial stress, on both faces, over the whole length; the largest over the travel.",
         ),
         statement("Material data", material_data(design)),
-    ]
+    ];
+    all.extend(crate::scenario::model(design));
+    all
 }
 
 /// What stands beside the drawn network, and what that does to the results.
@@ -144,11 +146,11 @@ fn material_data(design: &Design) -> String {
 
 /// What is not modelled.
 pub(crate) fn limits(design: &Design) -> Vec<Statement> {
-    vec![
+    let mut all = vec![
         statement("Joints", joint_limits(design)),
         statement(
             "Material",
-            "Linear elastic. No plasticity, creep, relaxation, temperature or fatigue; plastics lose force under lasting load.",
+            "Linear elastic. No plasticity or temperature in the force; creep and fatigue are checks where they are asked for (COMP009, COMP010). Plastics lose force under lasting load.",
         ),
         statement("Tolerances", "Half widths after ± are recorded and shown; they do not enter this analysis."),
         statement(
@@ -168,7 +170,9 @@ pub(crate) fn limits(design: &Design) -> Vec<Statement> {
                 "A mirrored mechanism is assumed to move symmetrically; modes that break the symmetry are not looked for."
             },
         ),
-    ]
+    ];
+    all.extend(crate::scenario::limits(design));
+    all
 }
 
 fn joint_limits(design: &Design) -> &'static str {
@@ -196,6 +200,7 @@ pub(crate) fn sources(design: &Design) -> Vec<Citation> {
             used_for: "stretching and shear of beams under large rotation",
         });
     }
+    all.extend(crate::scenario::sources(design));
     let mut keys: Vec<&'static str> = Vec::new();
     for key in design.materials.iter().flat_map(|m| &m.sources) {
         if !keys.contains(key) {
@@ -357,6 +362,7 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
         });
     }
     all.extend(leaving(design, behaviour));
+    all.extend(crate::scenario::warnings(design, behaviour, measured));
     if behaviour.interpolation_error > 1e-6 {
         all.push(Warning {
             code: "W0505",

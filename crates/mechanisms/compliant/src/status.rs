@@ -4,7 +4,7 @@ use forcewright_base::units::{Dimension, Unit, format_si};
 use forcewright_beam::{Jump, Status};
 use forcewright_model::{self as model, StatusKind as K};
 
-use crate::analysis::{Behaviour, Snap};
+use crate::analysis::{Behaviour, Measured, Snap};
 use crate::design::Design;
 use crate::loads::Control;
 
@@ -84,7 +84,7 @@ impl Words<'_> {
 }
 
 /// How the solve ended, in words.
-pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
+pub(crate) fn status(design: &Design, behaviour: &Behaviour, measured: &Measured) -> model::Status {
     let words = Words { design };
     if let Some(failed) = unfinished_stage(&words, behaviour) {
         return failed;
@@ -114,7 +114,8 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> model::Status {
         };
     }
     let (kind, message, advice) = ending(&words, behaviour);
-    model::Status { kind, message, advice }
+    let along = crate::scenario::status(design, measured).map_or_else(String::new, |along| format!("; {along}"));
+    model::Status { kind, message: format!("{message}{along}"), advice }
 }
 
 fn ending(words: &Words<'_>, behaviour: &Behaviour) -> (K, String, Option<String>) {

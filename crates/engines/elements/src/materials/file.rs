@@ -1,8 +1,23 @@
 //! Reads the catalogue's data file.
 
-use super::{Class, Fatigue, Material, Property, ValueKind};
+use super::{Class, CreepModulus, Fatigue, Material, Property, ValueKind};
 use forcewright_base::units::{Dimension, Quantity};
 use toml::de::{DeTable, DeValue};
+
+/// Keys of an entry.
+const KEYS: &[&str] = &[
+    "name",
+    "aliases",
+    "class",
+    "young_modulus",
+    "poisson_ratio",
+    "density",
+    "yield_stress",
+    "tensile_strength",
+    "fatigue",
+    "creep_modulus",
+    "note",
+];
 
 /// Reads a catalogue; the message says which entry and key is at fault.
 pub(super) fn read(text: &str) -> Result<Vec<Material>, String> {
@@ -17,8 +32,7 @@ pub(super) fn read(text: &str) -> Result<Vec<Material>, String> {
 fn material(table: &DeTable) -> Result<Material, String> {
     let name = text(table, "name")?.to_owned();
     let named = |error: String| format!("{name}: {error}");
-    known_keys(table, &["name", "aliases", "class", "young_modulus", "poisson_ratio", "density", "yield_stress", "fatigue", "note"])
-        .map_err(named)?;
+    known_keys(table, KEYS).map_err(named)?;
     let class = text(table, "class").map_err(named)?;
     let mut material = Material {
         aliases: strings(table, "aliases").map_err(named)?,
@@ -27,7 +41,9 @@ fn material(table: &DeTable) -> Result<Material, String> {
         poisson_ratio: property(table, "poisson_ratio", Dimension::Ratio).map_err(named)?,
         density_kg_per_m3: property(table, "density", Dimension::Density).map_err(named)?,
         yield_stress_pa: property(table, "yield_stress", Dimension::Stress).map_err(named)?,
+        tensile_strength_pa: property(table, "tensile_strength", Dimension::Stress).map_err(named)?,
         fatigue: fatigue(table).map_err(named)?,
+        creep_modulus: creep_modulus(table).map_err(named)?,
         note: optional_text(table, "note").map_err(named)?.map(str::to_owned),
         sources: Vec::new(),
         name,
@@ -36,6 +52,7 @@ fn material(table: &DeTable) -> Result<Material, String> {
         .properties()
         .flat_map(Property::source_keys)
         .chain(material.fatigue.iter().flat_map(Fatigue::source_keys))
+        .chain(material.creep_modulus.iter().flat_map(CreepModulus::source_keys))
         .map(str::to_owned)
         .collect();
     for source in cited {
@@ -66,6 +83,25 @@ fn fatigue(table: &DeTable) -> Result<Option<Fatigue>, String> {
         })
     };
     read().map(Some).map_err(|error| format!("fatigue: {error}"))
+}
+
+fn creep_modulus(table: &DeTable) -> Result<Option<CreepModulus>, String> {
+    let Some(inner) = inner_table(table, "creep_modulus", &["values", "kind", "source"])? else { return Ok(None) };
+    let value = |item: &DeValue| -> Result<[f64; 2], String> {
+        let table = item.as_table().ok_or("`values` is not a list of tables")?;
+        known_keys(table, &["time", "value"])?;
+        Ok([si(text(table, "time")?, Dimension::Time)?, si(text(table, "value")?, Dimension::Stress)?])
+    };
+    let read = || -> Result<CreepModulus, String> {
+        let list = inner.get("values").and_then(|list| list.get_ref().as_array()).ok_or("no list `values`")?;
+        let values: Vec<[f64; 2]> = list.iter().map(|item| value(item.get_ref())).collect::<Result<_, _>>()?;
+        let ascending = values.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+        if !ascending || !values.first().is_some_and(|[time_s, _]| *time_s > 0.0) {
+            return Err("times are not ascending from above 0".to_owned());
+        }
+        Ok(CreepModulus { values, kind: kind(inner)?, source: text(inner, "source")?.to_owned() })
+    };
+    read().map(Some).map_err(|error| format!("creep_modulus: {error}"))
 }
 
 fn kind(table: &DeTable) -> Result<ValueKind, String> {
@@ -142,6 +178,12 @@ mod tests {
             ("young_modulus = { value = \"2 GPa\", kind = \"guess\", source = \"a\" }", "kind `guess`"),
             ("young_modulus = { value = \"2 GPa\", kind = \"typical\" }", "no `source`"),
             ("youngs_modulus = \"2 GPa\"", "unknown key `youngs_modulus`"),
+            ("creep_modulus = { values = [], kind = \"typical\", source = \"a\" }", "creep_modulus: times are not ascending"),
+            (
+                "creep_modulus = { values = [{ time = \"2 h\", value = \"2 GPa\" }, { time = \"2 h\", value = \"1 GPa\" }] }",
+                "not ascending",
+            ),
+            ("creep_modulus = { values = [{ time = \"2 mm\", value = \"2 GPa\" }] }", "creep_modulus: `2 mm`"),
             ("aliases = \"Y\"", "`aliases` is not a list of texts"),
         ] {
             let message = read(&format!("{LEAST}{line}\n")).unwrap_err();

@@ -202,6 +202,7 @@ pub(crate) fn not_measured(design: &Design) -> Vec<&'static str> {
     if requirements.stress.is_some() && design.common_allowable_pa().is_none() {
         missing.push("stress");
     }
+    missing.extend(requirements.endurance());
     let limited = requirements.limits.iter().filter_map(|(index, ..)| Some(METRICS.get(*index)?.name));
     missing.extend(limited.filter(|name| !MEASURED.contains(name)));
     missing

@@ -381,10 +381,10 @@ const KEPT: [&str; 10] = [
 /// Requirements that a search does not see: they are checked at its end.
 pub(crate) fn not_kept(design: &Design) -> Vec<&'static str> {
     let limits = design.requirements.iter().flat_map(|r| &r.limits);
-    limits
+    let limits = limits
         .filter_map(|(index, ..)| METRICS.get(*index).map(|m| m.name))
-        .filter(|name| !KEPT.contains(name) || (*name == "mass" && mass_kg(design).is_none()))
-        .collect()
+        .filter(|name| !KEPT.contains(name) || (*name == "mass" && mass_kg(design).is_none()));
+    limits.chain(design.requirements.iter().flat_map(Requirements::endurance)).collect()
 }
 
 /// Two displacements of a window.
