@@ -71,8 +71,7 @@ impl<'a> Room<'a> {
             return Some("the project's tasks and the product do not see each other");
         };
         match (self, other) {
-            (Self::Engine(_), Self::Engine("curves" | "elements")) => None,
-            (Self::Model | Self::Output(_), Self::Engine("curves")) => None,
+            (Self::Engine(_), Self::Engine("curves" | "elements")) | (Self::Model | Self::Output(_), Self::Engine("curves")) => None,
             (Self::Engine(_), Self::Engine(_)) => Some("of its peers an engine may use only `curves` and `elements`"),
             (Self::Engine(_), Self::Model) => Some("engines are physics: what outputs understand is not theirs"),
             (Self::Model, Self::Engine(_)) => Some("the model is pure data and sees only the base and `curves`"),
@@ -252,10 +251,9 @@ mod tests {
         .concat();
         match from {
             "crates/base" | "xtask" => vec![],
-            "crates/model" => vec!["crates/base", "crates/engines/curves"],
             "crates/engines/beam" | "crates/engines/study" => vec!["crates/base", "crates/engines/curves", "crates/engines/elements"],
             "crates/engines/curves" => vec!["crates/base", "crates/engines/elements"],
-            "crates/engines/elements" => vec!["crates/base", "crates/engines/curves"],
+            "crates/engines/elements" | "crates/model" => vec!["crates/base", "crates/engines/curves"],
             "crates/contract" => [&["crates/base", "crates/model"][..], &engines].concat(),
             "crates/outputs/fabricate" | "crates/outputs/report" => vec!["crates/base", "crates/engines/curves", "crates/model"],
             "crates/mechanisms/cam" | "crates/mechanisms/compliant" => below_mechanisms,
