@@ -15,6 +15,7 @@ pub(crate) fn command() -> Command {
         .subcommand(new())
         .subcommand(check())
         .subcommand(solve())
+        .subcommand(synthesise())
         .subcommand(optimise())
         .subcommand(sweep())
         .subcommand(merge())
@@ -87,6 +88,42 @@ fn solve() -> Command {
         .arg(out("Write report.html, result.json, curves.csv and the figures into this folder"))
         .arg(json());
     choices(command).after_help(EXIT_CODES)
+}
+
+const SYNTHESISE_HELP: &str = "\
+The file says what is wanted and not how: [requirements] with a force band and a stroke, [material], and [synthesise] with the thinnest
+beam that can be made; room, depth of the plates, plates behind each other and the number of candidates are optional. Shapes of a catalogue
+are sized for it, analysed in full and ranked by the room that they take. What the file says of a design, a layout or a load is not used.
+
+Writes FILE-1-SHAPE.toml, …, each of which `forcewright solve` finds to meet everything, report.html and result.json. If nothing meets
+everything: the nearest design, and for each limit the nearest value that would do.
+
+Ctrl-C ends the work and keeps what was found.
+
+Exit codes: 0 a design meets all requirements, 1 none does (the nearest is written), 2 error in the file or the call, 4 input/output, 130 interrupted, best kept.";
+
+fn synthesise() -> Command {
+    Command::new("synthesise")
+        .about("Design from requirements alone: ranked project files, or the limit that blocks")
+        .arg(file().help("Project file with requirements, material and [synthesise]"))
+        .arg(
+            Arg::new("out")
+                .long("out")
+                .value_name("DIR")
+                .required(true)
+                .value_hint(ValueHint::DirPath)
+                .value_parser(clap::value_parser!(std::path::PathBuf))
+                .help("Write the project files, report.html and result.json into this folder"),
+        )
+        .arg(
+            Arg::new("set")
+                .long("set")
+                .value_name("KEY=VALUE")
+                .action(ArgAction::Append)
+                .help("Replace one value for this run, such as requirements.travel=\"8 mm\" (may be repeated)"),
+        )
+        .arg(json())
+        .after_help(SYNTHESISE_HELP)
 }
 
 const OPTIMISE_HELP: &str = "\

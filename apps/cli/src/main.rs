@@ -27,6 +27,7 @@ fn main() -> ExitCode {
         Some(("check", m)) => commands::check::run(m),
         Some(("solve", m)) => commands::solve::run(m),
         Some(("sweep", m)) => commands::sweep::run(m),
+        Some(("synthesise", m)) => commands::synthesise::run(m),
         Some(("optimise", m)) => commands::optimise::run(m),
         Some(("tolerance", m)) => commands::tolerance::run(m),
         Some(("export", m)) => commands::export::run(m),

@@ -56,6 +56,16 @@ pub fn with_values(text: &str, numbers: &[Number], changed: &[(usize, f64)], var
     Ok(document.to_string())
 }
 
+/// The text without some of its sections, and the names of those that it had.
+///
+/// # Errors
+/// [`EditError`] if the text is not TOML.
+pub fn without_tables(text: &str, roots: &[&'static str]) -> Result<(String, Vec<&'static str>), EditError> {
+    let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| EditError::NotToml(e.message().to_owned()))?;
+    let gone: Vec<&'static str> = roots.iter().filter(|root| document.remove(root).is_some()).copied().collect();
+    Ok((document.to_string(), gone))
+}
+
 /// A number as it is written in a file.
 fn written(number: &Number, si: f64) -> Value {
     let plain = rounded(number.unit.from_si(si));

@@ -12,6 +12,7 @@ use crate::describe::Describe;
 use crate::numbers::{Number, numbers_of};
 use crate::project::Project;
 use crate::studies::{Free, Purpose, Studies};
+use crate::synthesis::{Skeleton, Synthesiser};
 use crate::{paths, read, schema};
 
 /// Called with the finished fraction of the work; returns whether to go on.
@@ -51,6 +52,16 @@ pub trait Mechanism: Sync + 'static {
 
     /// The search that `[optimise]` asks for, over some numbers. What cannot vary, or is no objective, goes into `diagnostics`.
     fn task(spec: &Self::Spec, design: &Self::Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task>;
+
+    /// What completes a file that has requirements but no design; `None` if the family has no synthesis.
+    fn skeleton() -> Option<Skeleton> {
+        None
+    }
+
+    /// The synthesis that a file asks for, which was completed by the skeleton. What is missing for it goes into `diagnostics`.
+    fn synthesiser(_spec: &Self::Spec, _design: &Self::Design, _diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
+        None
+    }
 
     /// Codes of this family: its errors and its checks.
     fn explanations() -> &'static [Explanation];
@@ -124,6 +135,8 @@ pub trait Family: Sync {
     fn parameter_paths(&self) -> Vec<String>;
     /// Understands a project. Everything wrong is added to its diagnostics; `None` if it cannot be used.
     fn understand(&self, project: &mut Project) -> Option<Box<dyn Understood>>;
+    /// See [`Mechanism::skeleton`].
+    fn skeleton(&self) -> Option<Skeleton>;
     /// Codes of this family.
     fn explanations(&self) -> &'static [Explanation];
     /// The papers whose numbers it reproduces.
@@ -149,6 +162,8 @@ pub trait Understood: Sync {
     fn evaluator(&self, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>>;
     /// See [`Mechanism::task`].
     fn task(&self, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task>;
+    /// See [`Mechanism::synthesiser`].
+    fn synthesiser(&self, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>>;
 }
 
 /// Makes a [`Family`] of a [`Mechanism`].
@@ -197,6 +212,10 @@ impl<M: Mechanism> Understood for Ready<M> {
     fn task(&self, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
         M::task(&self.spec, &self.design, free, purpose, diagnostics)
     }
+
+    fn synthesiser(&self, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
+        M::synthesiser(&self.spec, &self.design, diagnostics)
+    }
 }
 
 impl<M: Mechanism> Family for Entry<M> {
@@ -232,6 +251,10 @@ impl<M: Mechanism> Family for Entry<M> {
         parameters.retain(|row| !M::studies(&spec).lack(&row.path));
         numbers.retain(|number| !Studies::hold(&number.path));
         Some(Box::new(Ready::<M> { design: design?, spec, parameters, numbers }))
+    }
+
+    fn skeleton(&self) -> Option<Skeleton> {
+        M::skeleton()
     }
 
     fn explanations(&self) -> &'static [Explanation] {

@@ -16,4 +16,5 @@ pub mod read;
 pub mod scatter;
 pub mod schema;
 pub mod studies;
+pub mod synthesis;
 pub mod tree;

@@ -21,6 +21,7 @@ pub mod gallery;
 mod load;
 mod optimise;
 pub mod sweep;
+mod synthesise;
 mod tolerance;
 
 pub use forcewright_base as base;
@@ -38,6 +39,7 @@ pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
 pub use front::{Front, FrontPoint, FrontProgress, FrontTask, Origin};
 pub use load::{Loaded, Refused};
 pub use optimise::{Optimised, Robust, Robustness, Wording};
+pub use synthesise::{Designed, Stage, SynthesisProgress, SynthesisTask, Synthesised, Way};
 pub use tolerance::{NoTolerance, ToleranceChoices, Toleranced};
 
 use forcewright_base::diagnostics::Explanation;
@@ -56,7 +58,7 @@ pub fn family(id: &str) -> Option<&'static dyn Family> {
 
 /// The long story of every code, in order.
 pub fn explanations() -> impl Iterator<Item = &'static Explanation> {
-    let studies = forcewright_contract::scatter::CODES.iter().chain(tolerance::CODES).chain(export::CODES);
+    let studies = forcewright_contract::scatter::CODES.iter().chain(tolerance::CODES).chain(synthesise::CODES).chain(export::CODES);
     forcewright_contract::codes::CODES.iter().chain(sweep::CODES).chain(studies).chain(FAMILIES.iter().flat_map(|f| f.explanations()))
 }
 

@@ -489,7 +489,7 @@ fn tightened(task: &Task, reserve: &Reserve) -> Vec<(String, f64, &'static str)>
 }
 
 /// The way from the folder of one file to that of another, with forward slashes; `None` if it is the same folder.
-fn way(from: &Path, to: &Path) -> Option<String> {
+pub(crate) fn way(from: &Path, to: &Path) -> Option<String> {
     let folder = |path: &Path| path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
     let (from, to) = (folder(from), folder(to));
     if from == to {

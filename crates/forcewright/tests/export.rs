@@ -169,6 +169,14 @@ fn what_the_process_cannot_make_is_missed() {
 }
 
 #[test]
+fn a_fillet_smaller_than_the_cutter_is_refused() {
+    let example = forcewright::gallery::find("compliant/lan-table3").expect("in the gallery");
+    let choices = Choices { set: vec!["parts.fillet=0.4 mm".to_owned()], ..Choices::default() };
+    let refused = Loaded::from_text("a.toml", example.text, &choices).expect_err("a cutter of 1 mm");
+    assert_eq!(refused.diagnostics.in_file_order().iter().map(|d| d.code).collect::<Vec<_>>(), ["E0519"]);
+}
+
+#[test]
 fn no_part_says_why() {
     let why = |name: &str, set: &[&str]| export(name, set, &[Format::Dxf]).expect_err("no part");
     let large = why("compliant/lan-table3", &["parts.fillet=20 mm"]);

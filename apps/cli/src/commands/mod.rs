@@ -13,6 +13,7 @@ pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod solve;
 pub(crate) mod sweep;
+pub(crate) mod synthesise;
 pub(crate) mod tolerance;
 
 use clap::ArgMatches;
@@ -31,6 +32,7 @@ pub(crate) fn welcome() -> u8 {
            forcewright new lan-table3                     a project file to edit\n  \
            forcewright solve lan-table3.toml --out out    the curve, the checks, and a report\n  \
            forcewright sweep lan-table3.toml --vary design.thickness=0.9mm..1.1mm:5    a table of designs\n  \
+           forcewright synthesise FILE --out out          designs from requirements alone, the best first\n  \
            forcewright optimise FILE --out out            a better design, within ranges and requirements\n  \
            forcewright tolerance tolerance-lan-thin.toml  the yield under the scatter of making\n  \
            forcewright export lan-table3.toml --out out   DXF and STEP of the part\n  \

@@ -87,7 +87,9 @@ struct New<'a> {
 fn set(table: &mut dyn TableLike, parts: &[&str], new: &New, create: bool) -> Result<(), EditError> {
     let in_the_way = || EditError::InTheWay(new.path.to_owned());
     let [key, rest @ ..] = parts else { return Err(in_the_way()) };
-    if rest.is_empty() || (place_in_list(rest).is_some() && table.get(key).is_none_or(|item| item.is_value() && !item.is_inline_table())) {
+    // A list is never a coordinate: `envelope.x = [low, high]` is a key of a table.
+    let inside = place_in_list(rest).is_some() && !new.value.is_array();
+    if rest.is_empty() || (inside && table.get(key).is_none_or(|item| item.is_value() && !item.is_inline_table())) {
         if !create && !table.contains_key(key) {
             return Ok(());
         }

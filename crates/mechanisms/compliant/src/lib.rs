@@ -28,10 +28,12 @@ mod statements;
 mod status;
 mod study;
 mod sway;
+mod synthesis;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress, Reproduction};
 use forcewright_contract::studies::{Free, Purpose, Studies};
+use forcewright_contract::synthesis::{Skeleton, Synthesiser};
 use forcewright_model::{Counter, NoPart, Outcome, PartSet, Status, StatusKind};
 
 use forcewright_study::evaluator::Evaluator;
@@ -115,6 +117,14 @@ impl Mechanism for Compliant {
 
     fn task(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
         study::task(spec, design, free, purpose, diagnostics)
+    }
+
+    fn skeleton() -> Option<Skeleton> {
+        Some(synthesis::SKELETON)
+    }
+
+    fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
+        synthesis::synthesiser(spec, design, diagnostics)
     }
 
     fn explanations() -> &'static [Explanation] {

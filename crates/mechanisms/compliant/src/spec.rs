@@ -8,6 +8,7 @@ use forcewright_contract::studies::Studies;
 
 use crate::metrics::METRICS;
 use crate::scenario::Scenario;
+use crate::synthesis::Synthesise;
 
 /// Everything that a project file can say.
 #[derive(Debug, Default)]
@@ -32,6 +33,8 @@ pub struct Spec {
     pub(crate) scenario: Section<Scenario>,
     /// `[model]`
     pub(crate) model: Section<Model>,
+    /// `[synthesise]`
+    pub(crate) synthesise: Section<Synthesise>,
     /// `[optimise]` and `[tolerance]`
     pub(crate) studies: Studies,
 }
@@ -142,7 +145,7 @@ pub(crate) struct FatigueStrength {
 /// How it is made.
 #[derive(Debug, Default)]
 pub(crate) struct Process {
-    method: Slot<&'static str>,
+    pub method: Slot<&'static str>,
     pub cutter_diameter: Slot<Quantity>,
     pub wall_min: Slot<Quantity>,
     pub gap_min: Slot<Quantity>,
@@ -325,6 +328,7 @@ impl Describe for Spec {
         );
         self.scenario.describe(v, &Param::new("scenario", "What a robot does with it."));
         self.model.describe(v, &Param::new("model", "Which equations are solved, and how well."));
+        self.synthesise.describe(v, &Param::new("synthesise", "What `forcewright synthesise` may use: room, depth, plates."));
         self.studies.describe(v);
         v.reserved(RESERVED_SECTIONS);
     }

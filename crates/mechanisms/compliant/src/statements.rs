@@ -284,7 +284,7 @@ fn leaving(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
     }
     if let Some(from) = behaviour.stack.as_ref().and_then(|s| s.apart_from_m) {
         all.push(Warning {
-            code: "W0513",
+            code: "W0514",
             message: format!(
                 "from Δ = {} on the layers do not move alike: curves and metrics are those of layers that do, the figure of the layers shows what they do",
                 show(from)

@@ -117,7 +117,7 @@ fn layers_part_where_the_drawn_network_branches() {
     let from = drawn.behaviour.unstable_from_m.expect("it branches");
     near(from, 2.0 * peak, 1e-4, "where the drawn layers branch");
     let codes: Vec<&str> = outcome(&laid_out("series = 2", travel), &[]).warnings.iter().map(|w| w.code).collect();
-    assert!(codes.contains(&"W0513"), "{codes:?}");
+    assert!(codes.contains(&"W0514"), "{codes:?}");
 }
 
 #[test]

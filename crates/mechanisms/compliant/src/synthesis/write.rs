@@ -1,0 +1,136 @@
+//! A sized shape as sections of a project file.
+
+use std::fmt::Write as _;
+
+use forcewright_base::maths;
+use forcewright_base::units::{Dimension, Unit, format_number, format_si};
+use forcewright_contract::edit;
+use forcewright_contract::synthesis::Proposal;
+
+use super::catalogue::{self, Solved, Stop};
+use super::sizing::{Asked, Size};
+
+/// Digits of what people read and make, thickness and depth, and of the size, of which all coordinates are multiples anyhow.
+const DIGITS: i32 = 4;
+const SIZE_DIGITS: i32 = 7;
+/// How far a search may move a node, of the size of the shape, and change a bend, rad, or the section.
+const NODES: f64 = 0.02;
+const BENDS: f64 = 0.3;
+const SECTION: f64 = 0.2;
+
+/// A proposal for a size; `round` counts its corrections.
+pub(super) fn proposal(asked: &Asked, size: &Size, length: &Unit, round: f64) -> Option<Proposal> {
+    let shape = catalogue::solved(size.shape)?;
+    let stop = shape.stops.get(size.stop)?;
+    // A thickness is cut off rather than rounded: the stress follows it.
+    let thickness_m = rounded(size.thickness_m, DIGITS, f64::floor);
+    let stiffer = maths::powi(size.thickness_m / thickness_m, 3);
+    let depth_m = if asked.nominal_n.is_some() { size.depth_m * stiffer } else { size.depth_m };
+    let size = Size {
+        thickness_m,
+        depth_m: rounded(depth_m, DIGITS, f64::round).min(asked.depth_max_m),
+        scale: rounded(size.scale, SIZE_DIGITS, f64::ceil),
+        ..*size
+    };
+    let travel_m = size.scale * stop.travel_m;
+    let room = stop.room_m().map(|side| side * size.scale + size.thickness_m);
+    let show = |si: f64| format_si(si, length, 4);
+    Some(Proposal {
+        topology: shape.topology.name,
+        title: shape.title.clone(),
+        sections: sections(asked, shape, &size, travel_m)?,
+        settings: if asked.room_m[0].is_finite() { envelope(asked, stop, &size) } else { Vec::new() },
+        sizes: vec![
+            ("Room", format!("{} × {}", show(room[0]), show(room[1]))),
+            ("Thickness", show(size.thickness_m)),
+            ("Depth", if size.plates > 1 { format!("{} × {}", size.plates, show(size.depth_m)) } else { show(size.depth_m) }),
+            ("Travel", show(travel_m)),
+        ],
+        state: state(&size, round),
+        cost: size.cost_m3,
+        parts: shape.beams,
+    })
+}
+
+/// A size as the numbers of a proposal.
+fn state(size: &Size, round: f64) -> Vec<f64> {
+    vec![size.shape as f64, size.stop as f64, size.scale, size.thickness_m, size.depth_m, f64::from(size.plates), size.cost_m3, round]
+}
+
+/// The size and the number of corrections of a proposal.
+pub(super) fn read(state: &[f64]) -> Option<(Size, f64)> {
+    let [shape, stop, scale, thickness_m, depth_m, plates, cost_m3, round] = *state else { return None };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small whole numbers, written by `state`")]
+    let size = Size { shape: shape as usize, stop: stop as usize, scale, thickness_m, depth_m, plates: plates as u32, cost_m3 };
+    Some((size, round))
+}
+
+/// To so many digits.
+fn rounded(value: f64, digits: i32, how: fn(f64) -> f64) -> f64 {
+    let place = maths::log10(value).floor();
+    if !place.is_finite() {
+        return value;
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "the decimal exponent of a double")]
+    let shift = digits - 1 - place as i32;
+    let ten = |n: i32| maths::powi(10.0, n);
+    // What is a decimal but for rounding stays that decimal.
+    let cut = |v: f64| if (v - v.round()).abs() < 1e-7 { v.round() } else { how(v) };
+    if shift >= 0 { cut(value * ten(shift)) / ten(shift) } else { cut(value / ten(-shift)) * ten(-shift) }
+}
+
+/// `[design]`, `[layout]`, `[load]` and the search that may go on from there.
+fn sections(asked: &Asked, shape: &Solved, size: &Size, travel_m: f64) -> Option<String> {
+    let value = |path: &str, dimension: Dimension, si: f64| match path {
+        "design.thickness" => Some(size.thickness_m),
+        "design.depth" => Some(size.depth_m),
+        "load.travel" => Some(travel_m),
+        _ => (path.starts_with("design.") && dimension == Dimension::Length).then_some(si * size.scale),
+    };
+    let numbers = shape.numbers.iter().enumerate();
+    let changed: Vec<(usize, f64)> = numbers.filter_map(|(i, n)| Some((i, value(&n.path, n.dimension, n.si)?))).collect();
+    let text = edit::with_values(shape.topology.text, &shape.numbers, &changed, None).ok()?;
+    let (from, to) = (text.find("[design]")?, text.find("[model]")?);
+    let mut own = text.get(from..to)?.trim_end().to_owned();
+    if size.plates > 1 {
+        own = own.replace("[layout]\n", &format!("[layout]\nplates = {}\n", size.plates));
+    }
+    Some(format!("\n# Sized by `forcewright synthesise`.\n{}{own}\n{}", shape.made, search(asked, shape, size)))
+}
+
+/// `[optimise]`: what may still change a little. Shapes given by their angles have nothing that may.
+fn search(asked: &Asked, shape: &Solved, size: &Size) -> String {
+    let bends = shape.numbers.iter().any(|n| n.path.ends_with(".bend.1"));
+    if !bends {
+        return String::new();
+    }
+    let mm = |si: f64| format!("\"{} mm\"", format_number(1e3 * si, 7));
+    let range =
+        |si: f64, most: f64| format!("{{ range = [{}, {}] }}", mm((1.0 - SECTION) * si), mm(((1.0 + SECTION) * si).min(most).max(si)));
+    let mut text = format!(
+        "\n[optimise]\nobjective = {{ maximise = \"flat_ratio\" }}\n[optimise.variables]\n\"design.thickness\" = {}\n\"design.depth\" = {}\n\"design.beams.*.bend\" = {{ within = {BENDS} }}\n",
+        range(size.thickness_m, f64::INFINITY),
+        range(size.depth_m, asked.depth_max_m),
+    );
+    let largest = shape.stops.last().map_or(0.0, |s| s.room_m().into_iter().fold(0.0, f64::max));
+    for node in free_nodes(shape.topology.text) {
+        let _ = writeln!(text, "\"design.nodes.{node}.at\" = {{ within = {} }}", mm(NODES * size.scale * largest));
+    }
+    text
+}
+
+/// The nodes of a shape that nothing holds.
+fn free_nodes(text: &str) -> Vec<&str> {
+    let lines = text.lines().skip_while(|l| *l != "[design.nodes]").skip(1).take_while(|l| l.starts_with('n'));
+    lines.filter(|l| !l.contains("support")).filter_map(|l| l.split(' ').next()).collect()
+}
+
+/// The room as an envelope around the drawing, so that an analysis tests it: symmetric about the mirror line, and the height left over
+/// shared out above and below.
+fn envelope(asked: &Asked, stop: &Stop, size: &Size) -> Vec<String> {
+    let middle = size.scale * f64::midpoint(stop.low_m[1], stop.high_m[1]);
+    let mm = |si: f64| format!("\"{} mm\"", format_number(1e3 * si, 7));
+    let [width, height] = asked.room_m;
+    let side = |key: &str, low: f64, high: f64| format!("requirements.envelope.{key}=[{}, {}]", mm(low), mm(high));
+    vec![side("x", -0.5 * width, 0.5 * width), side("y", middle - 0.5 * height, middle + 0.5 * height)]
+}
