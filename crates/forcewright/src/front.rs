@@ -135,7 +135,7 @@ impl Loaded {
     /// let text = strip.replace("travel = \"5 mm\"", "travel = \"0.05 mm\"") + "[optimise]\nobjective = { maximise = \"force_at_end\" }\n\
     ///     variables = { \"design.thickness\" = { range = [\"0.2 mm\", \"80 mm\"] } }\n[model]\nbeam = \"inextensible\"\n";
     /// let loaded = Loaded::from_text("strip.toml", &text, &Choices::default()).map_err(|e| e.render(false))?;
-    /// let axis = Axis::parse("requirements.stress.safety_factor=4,2").map_err(|e| e.to_string())?;
+    /// let axis = Axis::parse("requirements.stress.safety_factor=8,4").map_err(|e| e.to_string())?;
     /// let front = loaded.front(&DiskFiles, &axis, "".as_ref(), (None, None), &|_| true).map_err(|e| e.render(false))?;
     /// let force: Vec<f64> = front.points.iter().filter_map(|p| p.goal()).collect();
     /// // A limit keeps a reserve of up to 1e-4 of itself, which the force feels three times.

@@ -172,7 +172,7 @@ fn what_the_process_cannot_make_is_missed() {
 fn a_fillet_smaller_than_the_cutter_is_refused() {
     let example = forcewright::gallery::find("compliant/lan-table3").expect("in the gallery");
     let choices = Choices { set: vec!["parts.fillet=0.4 mm".to_owned()], ..Choices::default() };
-    let refused = Loaded::from_text("a.toml", example.text, &choices).expect_err("a cutter of 1 mm");
+    let refused = Loaded::from_text("a.toml", example.text, &choices).err().expect("a cutter of 1 mm");
     assert_eq!(refused.diagnostics.in_file_order().iter().map(|d| d.code).collect::<Vec<_>>(), ["E0519"]);
 }
 

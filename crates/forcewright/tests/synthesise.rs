@@ -39,7 +39,7 @@ impl Random {
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / 2.0_f64.powi(53)
+        ((z ^ (z >> 31)) >> 11) as f64 / forcewright::base::maths::powi(2.0, 53)
     }
 
     /// Three digits between two values, evenly in the logarithm.
