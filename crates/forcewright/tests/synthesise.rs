@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use forcewright::fabricate::{Format, Options};
 use forcewright::{Choices, DiskFiles, Loaded, SynthesisTask, Synthesised};
 
 /// A set of requirements.
@@ -283,4 +284,18 @@ fn what_a_file_extends_is_found_from_the_folder_of_results() {
     std::fs::write(&written, &found.designs[0].text).unwrap();
     let loaded = Loaded::from_file(&DiskFiles, &written, &Choices::default()).map_err(|e| e.render(false)).expect("understood");
     assert!(loaded.solve("", "", &mut |_| true).outcome.requirements_met());
+}
+
+/// The story of `docs/book`: what it says is found, and the best design is a part that its process can make.
+#[test]
+fn the_way_from_a_requirement_to_a_part() {
+    let found = found(include_str!("../../../docs/book/gripper-pad.toml"));
+    assert!(found.met());
+    let best = &found.designs[0];
+    assert_eq!((best.proposal.topology, found.designs.iter().filter(|d| d.met()).count()), ("one-beam-c", 4));
+    let loaded = Loaded::from_text(&best.file, &best.text, &Choices::default()).map_err(|e| e.render(false)).expect("understood");
+    let stress = loaded.solve(&best.file, "", &mut |_| true).outcome.metric("stress_max").expect("whole").value;
+    assert!((stress / 42e6 - 1.0).abs() < 0.02, "{stress}");
+    let part = loaded.export("pad", &[Format::Dxf, Format::Step], &Options::default()).map_err(|none| none.message).expect("a part");
+    assert!(part.can_be_made() && part.set.parts[0].holes.len() == 3 && part.files.len() == 2);
 }
