@@ -100,7 +100,7 @@ everything: the nearest design, and for each limit the nearest value that would 
 
 Ctrl-C ends the work and keeps what was found.
 
-Exit codes: 0 a design meets all requirements, 1 none does (the nearest is written), 2 error in the file or the call, 4 input/output, 130 interrupted, best kept.";
+Exit codes: 0 a design meets all requirements, 1 none does (the nearest is written where there is one), 2 error in the file or the call, 4 input/output, 130 interrupted, best kept.";
 
 fn synthesise() -> Command {
     Command::new("synthesise")

@@ -100,6 +100,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0326", "a part that cannot be written: none is known"),
     ("E0520", "a surface: tests of scenarios"),
     ("E0521", "a surface: tests of scenarios"),
+    ("W0515", "a warning of the analysis: tests of layouts"),
     ("W0514", "a warning of the analysis: tests of layouts"),
     ("W0520", "a warning of the analysis: tests of scenarios"),
     ("W0521", "a warning of the analysis: tests of scenarios"),

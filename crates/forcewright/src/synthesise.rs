@@ -20,6 +20,8 @@ use crate::optimise::{Beginnings, shortfall, way};
 use crate::{FAMILIES, Loaded, Refused, family};
 use files::{Known, Recorder, aligned};
 
+/// Designs analysed side by side before it is looked whether one of them does.
+const TOGETHER: usize = 4;
 /// Corrections of one proposal, beyond which it is taken as it is: families end earlier by themselves.
 const MOST_ROUNDS: usize = 8;
 /// A proposal that misses a requirement by less than this part of it may be mended by a search.
@@ -438,7 +440,11 @@ impl Work<'_> {
         let Ok(task) = SynthesisTask::from_file(&files, &self.task.path, &[]) else { return false };
         let work = Work { task: &task, go_on: self.go_on, analysed: AtomicUsize::new(0) };
         let proposals = task.synthesiser.proposals();
-        let found = proposals.par_chunks(1).any(|p| work.analysed(p).0.iter().any(Designed::met));
+        // So many at once, whatever the number of threads: the work done is part of the result.
+        let found = proposals.chunks(TOGETHER).any(|some| {
+            let met: Vec<bool> = some.par_chunks(1).map(|p| work.analysed(p).0.iter().any(Designed::met)).collect();
+            met.contains(&true)
+        });
         self.analysed.fetch_add(work.analysed.into_inner(), Ordering::Relaxed);
         found
     }

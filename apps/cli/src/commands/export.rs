@@ -23,9 +23,6 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         Err(refused) => return refuse(&refused, as_json),
     };
     output::narrate(&loaded.project.diagnostics.render(&loaded.project.sources, output::colour_on_stderr()));
-    if let Err(failed) = output::prepare(out) {
-        return output::write_failed(&failed, as_json);
-    }
     let exported = match loaded.export(&stem(file), &formats, &Options::default()) {
         Ok(exported) => exported,
         Err(none) => {
@@ -33,7 +30,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
             return exit::USAGE;
         }
     };
-    if let Err(failed) = output::write_all(out, &exported.files) {
+    if let Err(failed) = output::prepare(out).and_then(|()| output::write_all(out, &exported.files)) {
         return output::write_failed(&failed, as_json);
     }
     if as_json {

@@ -96,13 +96,16 @@ pub struct Fibre {
     pub safety: f64,
 }
 
-/// The fibre with the least safety among the beams that have a line. Lowest and highest stress are those of the computed states, at least
-/// 129 of a whole path: one that lies between two of them is missed by the square of their distance. The place is refined along the beam.
+/// The fibre with the least safety among the beams that have a line. Lowest and highest stress are those of rest, of the ends of earlier
+/// loads, and of the computed states, at least 129 of a whole path: one that lies between two of them is missed by the square of their
+/// distance. The place is refined along the beam.
 pub(crate) fn worst(behaviour: &Behaviour, line_of: impl Fn(usize) -> Option<Goodman>) -> Option<Fibre> {
     let beams = behaviour.path.points.first()?.beams.len();
     let at = |beam: usize, line: &Goodman, u: f64| {
-        let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        for stress_pa in behaviour.path.points.iter().filter_map(|p| p.beams.get(beam)).map(|b| b.stress_pa(u)) {
+        // From rest, without stress, through the ends of earlier loads.
+        let mut ranges = [[0.0_f64; 2]; 2];
+        let states = behaviour.path.before.iter().chain(&behaviour.path.points);
+        for stress_pa in states.filter_map(|p| p.beams.get(beam)).map(|b| b.stress_pa(u)) {
             for (range, stress_pa) in ranges.iter_mut().zip(stress_pa) {
                 *range = [range[0].min(stress_pa), range[1].max(stress_pa)];
             }

@@ -189,6 +189,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "`circular` turns the drawn network round an axis along the load; its copies include the opposite one, so a mirrored half or rows beside it would stand in the way of each other. Layers in series carry each other's block, which a moment or a rotation would turn by an amount that depends on the others.",
     ),
     code(
+        "W0515",
+        "copies run into each other",
+        "Rows, mirrored halves or planes around an axis are so near to each other that their beams would overlap, at rest or on the way. Contact is not modelled. Give `array` a larger `spacing`, `circular` a larger `radius` or fewer copies, or make the plates less deep. `clearance_min` is how far they are apart.",
+    ),
+    code(
         "W0514",
         "layers in series part",
         "Where the force of a layer falls with its displacement, layers in series do not move alike: one runs ahead. See `explain COMP008`.",

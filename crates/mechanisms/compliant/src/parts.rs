@@ -314,7 +314,7 @@ impl<'a> Drawing<'a> {
         let all = outline.regions.iter().enumerate().map(|(index, region)| Part {
             name: named(index),
             title: design.title.clone(),
-            material: design.materials.first().map(|m| m.origin.clone()),
+            material: design.beam_materials.first().and_then(|m| design.materials.get(*m)).map(|m| m.origin.clone()),
             depth_m,
             outline: region.outer.profile.clone(),
             cutouts: region.windows.iter().map(|w| w.profile.clone()).collect(),
@@ -331,8 +331,11 @@ impl<'a> Drawing<'a> {
         let (mut message, mut help) = (error.to_string(), "move a node, change the shape, or make the beams thinner there");
         match error {
             OutlineError::Fillet { joint, strips: [a, b], radius_m, largest_m } => {
-                let fits =
-                    if *largest_m > 0.0 { format!("the largest that does has {}", show(*largest_m)) } else { "no other does".to_owned() };
+                let fits = if *largest_m > 0.0 {
+                    format!("the largest that does there has {}", show(*largest_m))
+                } else {
+                    "no other does".to_owned()
+                };
                 let beams = if a == b {
                     format!("at beam `{}`", self.beam(*a))
                 } else {
@@ -358,6 +361,13 @@ impl<'a> Drawing<'a> {
             }
             OutlineError::NotSimple => "beams cross over each other".clone_into(&mut message),
             OutlineError::Strip { strip, what } => message = format!("beam `{}`: {what}", self.beam(*strip)),
+            OutlineError::Block { block } => {
+                message = format!(
+                    "the pad or block `{}` has no area: its node lies on the mirror line, which its pad would have to cross",
+                    self.joint(&Joint::Block(*block))
+                );
+                help = "move the load node beside the mirror line, or draw the whole mechanism without `layout.mirror`";
+            }
             _ => {}
         }
         no_part(message, help)
@@ -426,6 +436,15 @@ fn strip<'a>(design: &Design, beam: &'a Beam, image: Image, ends: [Joint; 2]) ->
 
 /// Hinges and free rotation are no part of one piece.
 fn one_piece(design: &Design) -> Result<(), NoPart> {
+    let mut kinds = design.beam_materials.clone();
+    kinds.sort_unstable();
+    kinds.dedup();
+    if kinds.len() > 1 {
+        return Err(no_part(
+            "beams of different materials are not cut from one plate",
+            "give all beams one material, or make them by projects of their own",
+        ));
+    }
     let beams = design.network.beams.iter().zip(&design.beam_names);
     let hinged = beams.clone().find(|(b, _)| b.start_joint == BeamJoint::Hinged || b.end_joint == BeamJoint::Hinged);
     if let Some((_, name)) = hinged {
@@ -452,7 +471,9 @@ fn checks(design: &Design, profiles: &[Profile]) -> Vec<Check> {
         let value = found.map(|n| n.width_m);
         let margin = value.zip(limit).map(|(v, l)| Check::margin_of(v, l, Sense::AtLeast, l));
         let at = found.map_or_else(String::new, |n| {
-            let [x, y] = [0, 1].map(|k| format_si(f64::midpoint(n.at_m[0][k], n.at_m[1][k]), &design.units.length, 4));
+            // Rounding is nothing to show.
+            let whole = |m: f64| if m.abs() < 1e-9 { 0.0 } else { m };
+            let [x, y] = [0, 1].map(|k| format_si(whole(f64::midpoint(n.at_m[0][k], n.at_m[1][k])), &design.units.length, 4));
             format!(" (at {x}, {y})")
         });
         let state = match (value, limit) {

@@ -11,6 +11,7 @@ use crate::bodies::Body;
 use crate::crossing::first_crossing;
 use crate::design::Design;
 use crate::loads::Control;
+use crate::room::gap_around_m;
 
 /// Length over thickness below which beam theory is doubtful.
 const SLENDER: f64 = 10.0;
@@ -306,6 +307,16 @@ fn leaving(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
 /// Things to know about this result.
 pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Warning> {
     let mut all = Vec::new();
+    let beside = measured.nearest.filter(|n| n.clearance.image.is_some()).map(|n| n.clearance.distance_m);
+    if let Some(gap_m) = [beside, gap_around_m(design, behaviour)].into_iter().flatten().reduce(f64::min).filter(|m| *m < 0.0) {
+        all.push(Warning {
+            code: "W0515",
+            message: format!(
+                "copies run into each other by {}: contact is not modelled, so the results hold only if they are moved apart",
+                format_si(-gap_m, &design.units.length, 4)
+            ),
+        });
+    }
     let name = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
     for (index, beam) in design.network.beams.iter().enumerate() {
         let slenderness = slenderness(beam);

@@ -146,7 +146,11 @@ fn planes_around_an_axis_meet_inside() {
     let gap = 2.0 * (inner_m * maths::sin(half) - 5e-3 * maths::cos(half));
     close(solved.get("clearance_min"), gap, 1e-8, "gap");
     // Too near to the axis they overlap.
-    assert!(solve(&laid_out("circular = { count = 8, radius = \"8 mm\" }", "1 mm"), &[]).get("clearance_min") < 0.0);
+    let tight = laid_out("circular = { count = 8, radius = \"8 mm\" }", "1 mm");
+    assert!(solve(&tight, &[]).get("clearance_min") < 0.0);
+    let warned = |text: &str| outcome(text, &[]).warnings.iter().any(|w| w.code == "W0515");
+    assert!(warned(&tight) && warned(&laid_out("array = { count = 2, spacing = \"0.5 mm\" }", "1 mm")));
+    assert!(!warned(&laid_out("array = { count = 2, spacing = \"40 mm\" }", "1 mm")));
 }
 
 #[test]

@@ -33,7 +33,7 @@ impl Describe for Synthesise {
         v.point(
             &length(
                 "room",
-                "Width and height of the whole mechanism in its plane over the travel, the height along the load; without it any.",
+                "Width and height that the beams of the whole layout take over the travel, the height along the load; without it any. Pads and blocks come on top.",
             ),
             &mut self.room,
         );
