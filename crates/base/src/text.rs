@@ -45,6 +45,24 @@ fn similarity(word: &str, candidate: &str) -> f64 {
     if part || reverse { whole.max(0.75) } else { whole }
 }
 
+/// Text for XML and HTML: the five characters that mean something there replaced, and control characters (which XML forbids) left out.
+pub fn xml(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            '\n' | '\t' => out.push(' '),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {}
+            c => out.push(c),
+        }
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -66,5 +84,10 @@ mod tests {
         }
         assert_eq!(closest("colour", keys), None);
         assert_eq!(closest(&"x".repeat(100_000), keys), None);
+    }
+
+    #[test]
+    fn markup_becomes_text() {
+        assert_eq!(xml("<script>alert('a & \"b\"')</script>\u{0}"), "&lt;script&gt;alert(&#39;a &amp; &quot;b&quot;&#39;)&lt;/script&gt;");
     }
 }

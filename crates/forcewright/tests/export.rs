@@ -127,9 +127,15 @@ fn the_drawing_has_the_thickness_that_gives_the_force() {
     let area: f64 = profiles.iter().map(Profile::area_m2).sum();
     let part = &exported.set.parts[0];
     assert!((area / area_m2(part) - 1.0).abs() < 1e-4, "{area}");
-    // Beams and what joins them: more than the beams alone, less than with all pads in full.
-    let beams: f64 = 2.0 * 1e-3 * [0.0365, 0.0203, 0.0216, 0.0206].iter().sum::<f64>();
-    assert!(area > 0.9 * beams && area < 2.0 * beams, "{area} {beams}");
+    // Beams of 1 mm, two pads of 6 mm × 6 mm, the foot of 5 mm × 6 mm between the halves and the block of 11 mm × 6 mm; the joints of
+    // beams, each a few square thicknesses in all, are what is left.
+    let length = |axis: &dyn Fn(f64) -> Oriented| {
+        let at = |i: i32| axis(f64::from(i) / 200.0).point_m;
+        (0..200).map(|i| maths::hypot(at(i + 1)[0] - at(i)[0], at(i + 1)[1] - at(i)[1])).sum::<f64>()
+    };
+    let beams: f64 = 2.0 * 1e-3 * table3_axes().iter().map(|axis| length(axis.as_ref())).sum::<f64>();
+    let solid = 6e-3 * (2.0 * 6e-3 + 5e-3 + 11e-3);
+    assert!((area - beams - solid).abs() < 4e-6, "{area} {beams} {solid}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Numbers and texts as files want them.
 
+pub(crate) use forcewright_base::text::xml;
 use forcewright_model::Part;
 
 use crate::shape::MM_PER_M;
@@ -18,24 +19,6 @@ fn decimals(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
-/// Text for XML: the five characters that mean something replaced, and control characters, which it forbids, left out.
-pub(crate) fn xml(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            '\n' | '\t' => out.push(' '),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {}
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 /// What people must know to make the part, a line each: title, material and depth, holes, notes.
