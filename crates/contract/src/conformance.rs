@@ -614,7 +614,7 @@ fn numbers<M: Mechanism>(example: &str) -> Vec<Number> {
         let shape = match number.part {
             Part::Whole => Shape::Quantity,
             Part::Entry(at) => Shape::List(values(&path), at),
-            Part::Coordinate(at) => Shape::Point(values(&path), at),
+            Part::Item(at) | Part::Coordinate(at) => Shape::Point(values(&path), at),
             Part::OfPoints(index, at) => Shape::Points(values(&path), 2 * index + at),
             Part::AtPlace(..) => return None,
         };

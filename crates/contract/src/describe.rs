@@ -199,6 +199,10 @@ pub trait Visitor {
     fn count(&mut self, _param: &Param, _slot: &mut Slot<u32>) {}
     /// A list of bare numbers, at most 32.
     fn numbers(&mut self, _param: &Param, _slot: &mut Slot<Vec<f64>>) {}
+    /// A list of quantities `["0.683 N/mm", "0.682 N/mm"]`, at most `most`.
+    fn quantities(&mut self, _param: &Param, _most: usize, _slot: &mut Slot<Vec<Quantity>>) {}
+    /// A curve `[["0 mm", "40 N"], …]` of pairs of two kinds of quantities, that of the parameter second; at most `most`.
+    fn pairs(&mut self, _param: &Param, _first: Dimension, _most: usize, _slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {}
     /// A point `["x", "y"]` of two quantities.
     fn point(&mut self, _param: &Param, _slot: &mut Slot<[Quantity; 2]>) {}
     /// Points `[["x", "y"], …]`, at most `most`.

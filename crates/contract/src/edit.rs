@@ -153,7 +153,7 @@ impl<'a> Change<'a> {
         let together: Vec<&Number> = self.numbers.iter().filter(|n| n.part.depth() > 0 && key_path(n) == key).collect();
         match self.number.part {
             Part::Whole => written(self.number, self.si),
-            Part::Entry(_) | Part::Coordinate(_) => together.iter().map(|n| self.now(n)).collect::<Array>().into(),
+            Part::Entry(_) | Part::Item(_) | Part::Coordinate(_) => together.iter().map(|n| self.now(n)).collect::<Array>().into(),
             Part::OfPoints(..) => {
                 let point = |pair: &[&Number]| Value::from(pair.iter().map(|n| self.now(n)).collect::<Array>());
                 together.chunks(2).map(point).collect::<Array>().into()
@@ -189,7 +189,7 @@ impl<'a> Change<'a> {
         // `at.x = …`, `bend.2 = …` over a list of the extended file.
         let table = item.as_table_like_mut()?;
         let part = match self.number.part {
-            Part::Entry(_) | Part::Coordinate(_) => self.number.path.rsplit('.').next()?,
+            Part::Entry(_) | Part::Item(_) | Part::Coordinate(_) => self.number.path.rsplit('.').next()?,
             _ => return None,
         };
         match table.get_mut(part) {
@@ -203,7 +203,7 @@ impl<'a> Change<'a> {
     fn inside<'v>(&self, list: &'v mut Value) -> Option<&'v mut Value> {
         let (first, second) = match self.number.part {
             Part::Whole => return None,
-            Part::Entry(index) | Part::Coordinate(index) => (index, None),
+            Part::Entry(index) | Part::Item(index) | Part::Coordinate(index) => (index, None),
             Part::OfPoints(index, axis) => (index, Some(axis)),
             Part::AtPlace(index, _) => (index, Some(1)),
         };

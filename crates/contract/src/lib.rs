@@ -9,6 +9,8 @@ pub mod describe;
 pub mod edit;
 pub mod family;
 pub mod header;
+pub mod judge;
+pub mod metrics;
 pub mod numbers;
 pub mod paths;
 pub mod project;

@@ -36,6 +36,8 @@ pub enum Part {
     Whole,
     /// A member of a list of bare numbers, by its index.
     Entry(usize),
+    /// A member of a list of quantities, by its index.
+    Item(usize),
     /// A coordinate of a point: 0 is x, 1 is y.
     Coordinate(usize),
     /// A coordinate of one of several points: index of the point, and coordinate.
@@ -49,7 +51,7 @@ impl Part {
     pub(crate) fn depth(self) -> usize {
         match self {
             Self::Whole => 0,
-            Self::Entry(_) | Self::Coordinate(_) | Self::AtPlace(..) => 1,
+            Self::Entry(_) | Self::Item(_) | Self::Coordinate(_) | Self::AtPlace(..) => 1,
             Self::OfPoints(..) => 2,
         }
     }
@@ -96,7 +98,7 @@ impl Collector {
         let axis = |at: usize| if at == 0 { "x" } else { "y" };
         let inside = match part {
             Part::Whole => String::new(),
-            Part::Entry(index) | Part::AtPlace(index, _) => format!(".{}", index + 1),
+            Part::Entry(index) | Part::Item(index) | Part::AtPlace(index, _) => format!(".{}", index + 1),
             Part::Coordinate(at) => format!(".{}", axis(at)),
             Part::OfPoints(index, at) => format!(".{}.{}", index + 1, axis(at)),
         };
@@ -131,6 +133,12 @@ impl Visitor for Collector {
         let Some(located) = slot else { return };
         for (index, value) in located.value.iter().enumerate() {
             self.note(param, Part::Entry(index), &Quantity::from_si(*value, param.dimension), located.span);
+        }
+    }
+    fn quantities(&mut self, param: &Param, _: usize, slot: &mut Slot<Vec<Quantity>>) {
+        let Some(located) = slot else { return };
+        for (index, quantity) in located.value.iter().enumerate() {
+            self.note(param, Part::Item(index), quantity, located.span);
         }
     }
     fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>) {

@@ -1,6 +1,6 @@
 //! Visitors that list: the dotted paths of a description, and the rows of a filled one.
 
-use forcewright_base::units::Quantity;
+use forcewright_base::units::{Dimension, Quantity};
 use forcewright_model::ParameterRow;
 
 use crate::data::DataFile;
@@ -48,6 +48,12 @@ impl Visitor for Keys {
         self.note(param);
     }
     fn numbers(&mut self, param: &Param, _: &mut Slot<Vec<f64>>) {
+        self.note(param);
+    }
+    fn quantities(&mut self, param: &Param, _: usize, _: &mut Slot<Vec<Quantity>>) {
+        self.note(param);
+    }
+    fn pairs(&mut self, param: &Param, _: Dimension, _: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
         self.note(param);
     }
     fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {
@@ -142,6 +148,12 @@ impl Visitor for Rows {
     }
     fn numbers(&mut self, param: &Param, slot: &mut Slot<Vec<f64>>) {
         self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));
+    }
+    fn quantities(&mut self, param: &Param, _: usize, slot: &mut Slot<Vec<Quantity>>) {
+        self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));
+    }
+    fn pairs(&mut self, param: &Param, _: Dimension, _: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        self.note(param, slot.as_ref(), |v| list(v, |p| list(&p.value, ToString::to_string)));
     }
     fn point(&mut self, param: &Param, slot: &mut Slot<[Quantity; 2]>) {
         self.note(param, slot.as_ref(), |v| list(v, ToString::to_string));

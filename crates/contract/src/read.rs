@@ -5,7 +5,7 @@ use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Quantity, QuantityError, Tolerance, Unit, format_number, format_si};
 
 use crate::data::DataFile;
-use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Reserved, Slot, Visitor, Word};
+use crate::describe::{Along, Describe, Form, Located, Members, Origin, Param, Range, Reserved, Slot, Visitor, Word};
 use crate::paths;
 use crate::project::FileError;
 use crate::tree::{Entry, Item, Table, Value};
@@ -431,6 +431,32 @@ impl Visitor for Reader<'_> {
                 return Err(wrong_length(item, &format!("at most {MOST_NUMBERS} numbers"), items.len()));
             }
             items.iter().map(|i| bare_number(param, i)).collect()
+        });
+    }
+
+    fn quantities(&mut self, param: &Param, most: usize, slot: &mut Slot<Vec<Quantity>>) {
+        self.fill(param, slot, |item| {
+            let example = format!("quantities in brackets, such as [\"{}\"]", param.dimension.example());
+            match list_of(item, "a list of quantities", &example)? {
+                items if (1..=most).contains(&items.len()) => items.iter().map(|i| quantity_of(param, i)).collect(),
+                items => Err(wrong_length(item, &format!("1 to {most} quantities"), items.len())),
+            }
+        });
+    }
+
+    fn pairs(&mut self, param: &Param, first: Dimension, most: usize, slot: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        let key = Param { dimension: first, range: Range::ANY, ..*param };
+        self.fill(param, slot, |item| {
+            let example = format!("pairs in brackets, such as [[\"{}\", \"{}\"]]", first.example(), param.dimension.example());
+            let items = list_of(item, "a list of pairs", &example)?;
+            if !(1..=most).contains(&items.len()) {
+                return Err(wrong_length(item, &format!("1 to {most} pairs"), items.len()));
+            }
+            let pair = |item: &Item| match list_of(item, "a pair", &example)? {
+                [x, y] => Ok(Located::new([quantity_of(&key, x)?, quantity_of(param, y)?], item.span)),
+                other => Err(wrong_length(item, "two quantities", other.len())),
+            };
+            items.iter().map(pair).collect()
         });
     }
 

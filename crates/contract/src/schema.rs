@@ -106,6 +106,14 @@ impl Visitor for Schema {
     fn numbers(&mut self, param: &Param, _: &mut Slot<Vec<f64>>) {
         self.add(param, json!({ "type": "array", "items": number_schema(param) }));
     }
+    fn quantities(&mut self, param: &Param, most: usize, _: &mut Slot<Vec<Quantity>>) {
+        self.add(param, json!({ "type": "array", "items": quantity_schema(param), "minItems": 1, "maxItems": most }));
+    }
+    fn pairs(&mut self, param: &Param, first: Dimension, most: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        let items = [quantity_schema(&Param { dimension: first, ..*param }), quantity_schema(param)];
+        let pair = json!({ "type": "array", "prefixItems": items, "minItems": 2, "maxItems": 2 });
+        self.add(param, json!({ "type": "array", "items": pair, "minItems": 1, "maxItems": most }));
+    }
     fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {
         self.add(param, json!({ "type": "array", "items": quantity_schema(param), "minItems": 2, "maxItems": 2 }));
     }
@@ -221,6 +229,16 @@ impl Visitor for Listing {
     }
     fn numbers(&mut self, param: &Param, _: &mut Slot<Vec<f64>>) {
         self.row(param, "a list of numbers");
+    }
+    fn quantities(&mut self, param: &Param, most: usize, _: &mut Slot<Vec<Quantity>>) {
+        let takes = format!("1 to {most} of {}, `[\"{}\"]`", param.dimension.name(), param.dimension.example());
+        self.row(param, &takes);
+    }
+    fn pairs(&mut self, param: &Param, first: Dimension, most: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
+        let (name, with) = (first.name(), param.dimension.name());
+        let takes =
+            format!("at most {most} pairs of {name} and {with}, `[[\"{}\", \"{}\"]]`", first.example(), param.dimension.example());
+        self.row(param, &takes);
     }
     fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {
         let takes = format!("two of {}, `[\"{1}\", \"{1}\"]`", param.dimension.name(), param.dimension.example());

@@ -25,6 +25,7 @@ mod synthesise;
 mod tolerance;
 
 pub use forcewright_base as base;
+pub use forcewright_cam as cam;
 pub use forcewright_compliant as compliant;
 pub use forcewright_contract as contract;
 pub use forcewright_curves as curves;
@@ -49,7 +50,7 @@ use forcewright_contract::family::{Entry, Family, Reproduction};
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Every family. A new one costs its folder and a line here.
-pub static FAMILIES: &[&dyn Family] = &[&Entry::<forcewright_compliant::Compliant>::new()];
+pub static FAMILIES: &[&dyn Family] = &[&Entry::<forcewright_compliant::Compliant>::new(), &Entry::<forcewright_cam::Cam>::new()];
 
 /// A family by its name in project files.
 pub fn family(id: &str) -> Option<&'static dyn Family> {

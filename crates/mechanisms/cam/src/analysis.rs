@@ -1,0 +1,359 @@
+//! From a design to what it does: forces over the stroke in both directions, and in a motion.
+
+use std::sync::Arc;
+
+use forcewright_base::maths;
+
+use crate::cut::{Cut, CutError, SIDES};
+use crate::design::Design;
+use crate::mechanism::{Drive, Instant, Mechanism, NotAssembled, Pose, Sense};
+use crate::metrics::METRICS;
+use crate::motion::{self, Moment};
+use crate::path::{Corner, corner, curvature_per_m, frame};
+
+/// Stations over the stroke, for curves and pictures.
+pub const STATIONS: usize = 480;
+/// Panels of the window, for means; extremes are taken at their ends and middles.
+const PANELS: usize = 400;
+
+/// Forces at a travel.
+#[derive(Clone, Copy, Debug)]
+pub struct Station {
+    /// Travel s, m.
+    pub travel_m: f64,
+    /// Where everything is without friction.
+    pub pose: Pose,
+    /// Without friction.
+    pub still: Instant,
+    /// Slider moving along its travel.
+    pub up: Instant,
+    /// Slider moving back.
+    pub down: Instant,
+    /// Way of a free slider to the right: without friction, up, down, m.
+    pub sideways_m: [f64; 3],
+}
+
+/// What a design does.
+#[derive(Clone, Debug)]
+pub struct Behaviour {
+    /// The paths as cut.
+    pub cut: Arc<Cut>,
+    /// The mechanism.
+    pub mechanism: Mechanism,
+    /// Where the cam is undercut, right and left.
+    pub corners: [Option<Corner>; SIDES],
+    /// Over the stroke.
+    pub stations: Vec<Station>,
+    /// Where means are taken, m.
+    pub window_m: [f64; 2],
+    /// Over the window: two intervals per panel.
+    pub window: Vec<Station>,
+    /// Where the mechanism could not be assembled any more: travel, and why.
+    pub stopped: Option<(f64, NotAssembled)>,
+    /// The motion.
+    pub motion: Option<Vec<Moment>>,
+    /// The slower motion that it is compared with.
+    pub reference: Option<Vec<Moment>>,
+    /// Times a path was evaluated.
+    pub evaluations: u64,
+}
+
+impl Behaviour {
+    /// Analyses a design.
+    ///
+    /// # Errors
+    /// [`CutError`] where the cam cannot be cut.
+    pub fn of(design: &Design) -> Result<Self, CutError> {
+        let cut = design.cut()?;
+        let lost_m = (0..SIDES).filter_map(|side| corner(&cut, side, design.cut_roller_m)).map(|c| c.travel_m).fold(0.0, f64::max);
+        let stroke_m = design.purpose.stroke_m;
+        let window_m = design.window_m.unwrap_or([lost_m.min(0.5 * stroke_m), stroke_m]);
+        Ok(Self::sampled(design, cut, window_m, STATIONS, 2 * PANELS))
+    }
+
+    /// What a design does on a cam, at so many intervals of the stroke, and of the window (an even number).
+    pub fn sampled(design: &Design, cut: Arc<Cut>, window_m: [f64; 2], over_stroke: usize, over_window: usize) -> Self {
+        let mechanism = design.mechanism(&cut);
+        let corners = [0, 1].map(|side| mechanism.paths[side].corner().copied());
+        let stroke_m = design.purpose.stroke_m;
+        let mut evaluations = 0;
+        let free = design.free_guide;
+        let (stations, stopped) = scan(&mechanism, [0.0, stroke_m], over_stroke, free, &mut evaluations);
+        let (window, cut_short) = scan(&mechanism, window_m, over_window, free, &mut evaluations);
+        let run = |m: &motion::Motion| motion::run(&mechanism, m);
+        let motion = design.motion.as_ref().and_then(|m| run(m).ok());
+        let reference = design.motion.as_ref().and_then(|m| run(&m.lasting(m.reference_s?)).ok());
+        Self { cut, corners, stations, window_m, window, stopped: stopped.or(cut_short), motion, reference, evaluations, mechanism }
+    }
+
+    /// Mean and standard deviation over the window, by Simpson's rule.
+    pub fn moments(&self, value: impl Fn(&Station) -> f64) -> [f64; 2] {
+        let n = self.window.len() - 1;
+        let weight = |i: usize| if i == 0 || i == n { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+        let total = 3.0 * n as f64;
+        let mean = self.window.iter().enumerate().map(|(i, s)| weight(i) * value(s)).sum::<f64>() / total;
+        let spread = self.window.iter().enumerate().map(|(i, s)| weight(i) * (value(s) - mean) * (value(s) - mean)).sum::<f64>() / total;
+        [mean, spread.max(0.0).sqrt()]
+    }
+
+    /// Smallest and largest value over some stations.
+    pub fn extent(stations: &[Station], value: impl Fn(&Station) -> f64) -> [f64; 2] {
+        stations.iter().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    }
+}
+
+/// Forces at even travels; stops where a brace no longer reaches its path.
+fn scan(
+    mechanism: &Mechanism,
+    [from, to]: [f64; 2],
+    intervals: usize,
+    free: bool,
+    evaluations: &mut u64,
+) -> (Vec<Station>, Option<(f64, NotAssembled)>) {
+    let mut stations: Vec<Station> = Vec::with_capacity(intervals + 1);
+    for i in 0..=intervals {
+        let s = from + (to - from) * i as f64 / intervals as f64;
+        let near = stations.last();
+        let found = if free { free_station(mechanism, s, near) } else { station(mechanism, s, near) };
+        match found {
+            Ok(station) => {
+                *evaluations += u64::from(station.pose.evaluations);
+                stations.push(station);
+            }
+            Err(why) => return (stations, Some((s, why))),
+        }
+    }
+    (stations, None)
+}
+
+fn station(mechanism: &Mechanism, travel_m: f64, near: Option<&Station>) -> Result<Station, NotAssembled> {
+    let pose = mechanism.pose_near([travel_m, 0.0], near.map(|n| &n.pose))?;
+    let drive = Drive::rest(travel_m);
+    let [still, up, down] = [Sense::Frictionless, Sense::Up, Sense::Down].map(|sense| mechanism.forces(&pose, &drive, sense));
+    Ok(Station { travel_m, pose, still, up, down, sideways_m: [0.0; 3] })
+}
+
+/// A slider that is free to move sideways goes where nothing has to guide it.
+fn free_station(mechanism: &Mechanism, travel_m: f64, near: Option<&Station>) -> Result<Station, NotAssembled> {
+    let mut evaluations = 0;
+    let mut settle = |sense: Sense, start: f64| -> Result<(f64, Pose, Instant), NotAssembled> {
+        let mut at = |x: f64| {
+            let pose = mechanism.pose_near([travel_m, x], near.map(|n| &n.pose))?;
+            evaluations += pose.evaluations;
+            let drive = Drive { at: [travel_m, x], ..Drive::default() };
+            Ok((pose, mechanism.forces(&pose, &drive, sense)))
+        };
+        let (mut x, mut step) = (start, 1e-6);
+        let (mut pose, mut here) = at(x)?;
+        for _ in 0..40 {
+            let (_, beside) = at(x + step)?;
+            let slope = (beside.guide_n - here.guide_n) / step;
+            let change = (here.guide_n / slope).clamp(-0.005, 0.005);
+            if !change.is_finite() {
+                break;
+            }
+            x -= change;
+            (pose, here) = at(x)?;
+            if change.abs() < 1e-13 {
+                break;
+            }
+            step = (0.1 * change).abs().clamp(1e-9, 1e-6);
+        }
+        Ok((x, pose, here))
+    };
+    let start = near.map_or([0.0; 3], |n| n.sideways_m);
+    let (x0, pose, still) = settle(Sense::Frictionless, start[0])?;
+    let (x1, _, up) = settle(Sense::Up, start[1])?;
+    let (x2, _, down) = settle(Sense::Down, start[2])?;
+    Ok(Station { travel_m, pose: Pose { evaluations, ..pose }, still, up, down, sideways_m: [x0, x1, x2] })
+}
+
+/// Metrics by the index of [`METRICS`].
+#[derive(Clone, Debug, Default)]
+pub struct Measured {
+    values: Vec<Option<f64>>,
+}
+
+impl Measured {
+    /// A metric by name.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.value(METRICS.iter().position(|m| m.name == name)?)
+    }
+
+    /// A metric by its index.
+    pub fn value(&self, index: usize) -> Option<f64> {
+        self.values.get(index).copied().flatten()
+    }
+
+    fn set(&mut self, name: &str, value: impl Into<Option<f64>>) {
+        if let Some(index) = METRICS.iter().position(|m| m.name == name) {
+            self.values[index] = value.into().filter(|v| v.is_finite());
+        }
+    }
+}
+
+/// Every metric that the behaviour has.
+pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
+    let mut m = Measured { values: vec![None; METRICS.len()] };
+    geometry(design, behaviour, &mut m);
+    mass(design, &mut m);
+    // The rest is about the whole stroke: a mechanism that does not reach its end has no such numbers.
+    if behaviour.stopped.is_some() {
+        return m;
+    }
+    forces(design, behaviour, &mut m);
+    contact(behaviour, &mut m);
+    moving(behaviour, &mut m);
+    m
+}
+
+/// Those that studies of many designs take as they are: all but what follows from the forces over the window.
+pub(crate) fn measure_scalars(design: &Design, behaviour: &Behaviour) -> Measured {
+    let mut m = Measured { values: vec![None; METRICS.len()] };
+    geometry(design, behaviour, &mut m);
+    mass(design, &mut m);
+    contact(behaviour, &mut m);
+    moving(behaviour, &mut m);
+    m
+}
+
+fn mass(design: &Design, m: &mut Measured) {
+    let bodies = &design.built.bodies;
+    let springs: f64 = design.built.springs.iter().map(|s| s.mass_kg).sum();
+    m.set("moving_mass", bodies.slider_kg + 2.0 * (bodies.brace_kg + bodies.roller_kg) + springs);
+}
+
+fn geometry(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
+    let cut = &behaviour.cut;
+    let sense = cut.purpose().springs.sense();
+    let [from, to] = cut.range_m();
+    let radius = |side: usize| {
+        let path = &behaviour.mechanism.paths[side];
+        // From the start of the path, where it is curved most, also where the cam is undercut there.
+        let all = (0..=STATIONS).map(|i| from + (to - from) * (i as f64 / STATIONS as f64) * (i as f64 / STATIONS as f64));
+        all.map(|l| curvature_per_m(&path.designed(l), sense)).fold(0.0, f64::max).recip()
+    };
+    m.set("path_curvature_radius_min", radius(0).min(radius(1)));
+    let lost = behaviour.corners.iter().flatten().map(|c| c.travel_m).fold(0.0, f64::max);
+    m.set("undercut_travel", lost);
+    let height = |side: usize| {
+        let place = |l: f64| {
+            let p = behaviour.mechanism.paths[side].designed(l);
+            let [_, normal] = frame(&p, sense);
+            p.at[1] - design.cut_roller_m * normal[1]
+        };
+        place(to) - place(behaviour.corners[side].map_or(from, |c| c.lambda_m))
+    };
+    m.set("cam_length", height(0).max(height(1)));
+}
+
+fn forces(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
+    let window = &behaviour.window;
+    let [mean, _] = behaviour.moments(|s| s.still.force_n);
+    let [up, up_sd] = behaviour.moments(|s| s.up.force_n);
+    let [down, down_sd] = behaviour.moments(|s| s.down.force_n);
+    let [up_min, up_max] = Behaviour::extent(window, |s| s.up.force_n);
+    let [down_min, down_max] = Behaviour::extent(window, |s| s.down.force_n);
+    for (name, value) in [
+        ("force_mean", mean),
+        ("force_up_mean", up),
+        ("force_up_sd", up_sd),
+        ("force_up_max", up_max),
+        ("force_up_min", up_min),
+        ("force_down_mean", down),
+        ("force_down_sd", down_sd),
+        ("force_down_max", down_max),
+        ("force_down_min", down_min),
+    ] {
+        m.set(name, value);
+    }
+    let (high, low) = (up_max.max(down_max), up_min.min(down_min));
+    m.set("force_spread", (high - low) / (high + low));
+    let [from, to] = behaviour.window_m;
+    m.set("loop_area", (up - down) * (to - from));
+    m.set("hysteresis", (up - down) / mean);
+    if let Some((law, _)) = design.requirements.as_ref().and_then(|r| r.force.as_ref()) {
+        let off = |s: &Station| {
+            let [wanted, _] = law.force_n(s.travel_m);
+            (s.up.force_n / wanted - 1.0).abs().max((s.down.force_n / wanted - 1.0).abs())
+        };
+        m.set("force_deviation", Behaviour::extent(window, off)[1]);
+    }
+    let s = &behaviour.stations;
+    let step = design.purpose.stroke_m / (s.len() - 1).max(1) as f64;
+    let work: f64 = s.windows(2).map(|p| 0.5 * step * (p[0].still.force_n + p[1].still.force_n)).sum();
+    m.set("energy", work);
+    let weightless = Mechanism { gravity_m_per_s2: 0.0, ..behaviour.mechanism.clone() };
+    let [without, _] = behaviour.moments(|s| {
+        let drive = Drive { at: [s.travel_m, s.sideways_m[0]], ..Drive::default() };
+        weightless.forces(&s.pose, &drive, Sense::Frictionless).force_n
+    });
+    m.set("weight", mean - without);
+}
+
+fn contact(behaviour: &Behaviour, m: &mut Measured) {
+    let stations = &behaviour.stations;
+    let all = |pick: &dyn Fn(&Instant) -> [f64; 2]| {
+        let of = |s: &Station| {
+            [s.up, s.down, s.still].iter().map(pick).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)])
+        };
+        stations.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)])
+    };
+    let both = |pick: fn(&crate::mechanism::SideForces) -> f64| {
+        move |i: &Instant| {
+            let [a, b] = [pick(&i.sides[0]), pick(&i.sides[1])];
+            [a.min(b), a.max(b)]
+        }
+    };
+    let [normal_min, normal_max] = all(&both(|s| s.normal_n));
+    m.set("contact_force_min", normal_min);
+    m.set("contact_force_max", normal_max);
+    let [brace_min, brace_max] = all(&both(|s| s.brace_n));
+    m.set("brace_tension_min", brace_min);
+    m.set("brace_tension_max", brace_max);
+    m.set("friction_needed_max", all(&both(|s| (s.tangential_n / s.normal_n).abs()))[1]);
+    m.set("guide_force_max", all(&|i: &Instant| [i.guide_n.abs(); 2])[1]);
+    let [length_min, length_max] = all(&|i: &Instant| [i.spring_m; 2]);
+    m.set("spring_length_min", length_min);
+    m.set("spring_length_max", length_max);
+    m.set("spring_force_max", all(&|i: &Instant| [i.spring_n.abs(); 2])[1]);
+    m.set("pressure_angle_max", Behaviour::extent(&behaviour.window, |s| pressure_angle(behaviour, s))[1]);
+    let lateral = |s: &Station| {
+        let x = 1e-6;
+        let force = |x: f64| {
+            let at = [s.travel_m, s.sideways_m[0] + x];
+            let pose = behaviour.mechanism.pose_near(at, Some(&s.pose)).ok()?;
+            Some(behaviour.mechanism.forces(&pose, &Drive { at, ..Drive::default() }, Sense::Frictionless).guide_n)
+        };
+        force(x).zip(force(-x)).map_or(f64::NAN, |(a, b)| (a - b) / (2.0 * x))
+    };
+    let sparse: Vec<Station> = behaviour.window.iter().step_by(behaviour.window.len().div_ceil(40)).copied().collect();
+    m.set("lateral_stiffness_min", Behaviour::extent(&sparse, lateral)[0]);
+}
+
+/// The larger of the two angles between the pull of a brace and the path of its roller, rad.
+pub(crate) fn pressure_angle(behaviour: &Behaviour, station: &Station) -> f64 {
+    let sense = behaviour.mechanism.springs.sense();
+    let of = |side: usize| {
+        let place = &station.pose.places[side];
+        let [along, _] = frame(place, sense);
+        let joint = station.pose.joints[side];
+        let brace = [joint[0] - place.at[0], joint[1] - place.at[1]];
+        let (dot, cross) = (along[0] * brace[0] + along[1] * brace[1], along[0] * brace[1] - along[1] * brace[0]);
+        maths::atan2(cross.abs(), dot.abs())
+    };
+    of(0).max(of(1))
+}
+
+fn moving(behaviour: &Behaviour, m: &mut Measured) {
+    let Some(motion) = &behaviour.motion else { return };
+    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NEG_INFINITY, f64::max);
+    m.set("peak_force_ratio", most(&mut motion.iter().map(|i| i.moving.force_n / i.resting.force_n - 1.0)));
+    if let Some(reference) = &behaviour.reference {
+        m.set("peak_force_ratio_to", most(&mut motion.iter().zip(reference).map(|(a, b)| a.moving.force_n / b.moving.force_n - 1.0)));
+    }
+    m.set("force_max_motion", most(&mut motion.iter().map(|i| i.moving.force_n)));
+    m.set("force_min_motion", -most(&mut motion.iter().map(|i| -i.moving.force_n)));
+    let least = |i: &Moment| i.moving.sides[0].normal_n.min(i.moving.sides[1].normal_n);
+    m.set("contact_force_min_motion", -most(&mut motion.iter().map(|i| -least(i))));
+}

@@ -1,0 +1,464 @@
+//! From what was typed to a design: references checked, catalogue values in place, SI numbers.
+
+mod profile;
+mod springs;
+
+use std::sync::Arc;
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
+use forcewright_base::units::{Dimension, Quantity, Unit};
+use forcewright_contract::describe::{Located, Origin, Section, Slot};
+use forcewright_contract::metrics::Limit;
+use forcewright_elements::materials;
+
+use crate::cut::{Cut, CutError, CutSide, Purpose, SIDES};
+use crate::law::ForceLaw;
+use crate::mechanism::{Bodies, Mechanism, SpringMass};
+use crate::motion::{Law, Motion};
+use crate::path::{Flaws, SidePath};
+use crate::spec::{self, Spec};
+use crate::springs::{Bank, Spring};
+
+/// A design, ready to be analysed. SI units.
+#[derive(Clone, Debug)]
+pub struct Design {
+    /// The project's title.
+    pub title: String,
+    /// What the cam was cut for.
+    pub purpose: Purpose,
+    /// Radius of the rollers for which it was cut, m.
+    pub cut_roller_m: f64,
+    /// The mechanism as it is built.
+    pub built: Built,
+    /// How the slider moves, where that is asked for.
+    pub motion: Option<Motion>,
+    /// Whether the slider is free to move sideways.
+    pub free_guide: bool,
+    /// Materials of cam and roller.
+    pub materials: [Option<Material>; 2],
+    /// Friction that is there between roller and cam.
+    pub friction: Option<f64>,
+    /// What it must do; `None` if the project asks for nothing.
+    pub requirements: Option<Requirements>,
+    /// Where means are taken, from and to, m; by default the stroke without undercut.
+    pub window_m: Option<[f64; 2]>,
+    /// Units in which people are shown results.
+    pub units: DisplayUnits,
+}
+
+/// The mechanism as it is built: what tolerances and errors change.
+#[derive(Clone, Debug)]
+pub struct Built {
+    /// Right and left brace, m.
+    pub brace_m: [f64; SIDES],
+    /// Radius of the rollers, m.
+    pub roller_m: f64,
+    /// Arm of the rolling resistance, m.
+    pub arm_m: f64,
+    /// Thickness of the cam, m, if known.
+    pub thickness_m: Option<f64>,
+    /// The springs.
+    pub springs: Vec<Spring>,
+    /// Whether they are extension springs.
+    pub extension: bool,
+    /// Length beyond which they are over-extended, m.
+    pub max_length_m: Option<f64>,
+    /// Length below which they are solid, m.
+    pub min_length_m: Option<f64>,
+    /// Masses.
+    pub bodies: Bodies,
+    /// Against the travel, m/s².
+    pub gravity_m_per_s2: f64,
+    /// Angle between the travel and the axis of the cam, rad.
+    pub tilt_rad: f64,
+    /// Angle by which each profile is turned towards the axis, rad.
+    pub turn_rad: [f64; SIDES],
+    /// Shift of each profile outwards, m.
+    pub offset_m: [f64; SIDES],
+    /// Shift of both along the travel, m.
+    pub height_m: f64,
+}
+
+/// A material for the contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// What it is called.
+    pub name: String,
+    /// Young's modulus, Pa.
+    pub young_pa: Option<f64>,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+    /// Yield stress, Pa.
+    pub yield_pa: Option<f64>,
+    /// Density, kg/m³.
+    pub density_kg_per_m3: Option<f64>,
+    /// Keys of the works that catalogue values were taken from.
+    pub sources: Vec<&'static str>,
+}
+
+/// What the mechanism must do, SI.
+#[derive(Clone, Debug)]
+pub struct Requirements {
+    /// The force over the travel, and the half width of the band around it.
+    pub force: Option<(ForceLaw, f64)>,
+    /// Travel that is needed, m.
+    pub stroke_m: Option<f64>,
+    /// Largest hysteresis.
+    pub hysteresis: Option<f64>,
+    /// Limits on metrics.
+    pub limits: Vec<Limit>,
+}
+
+/// Units in which people are shown results: those that they typed.
+#[derive(Clone, Debug)]
+pub struct DisplayUnits {
+    /// Travel.
+    pub travel: Unit,
+    /// Lengths of the drawing.
+    pub length: Unit,
+    /// Forces.
+    pub force: Unit,
+    /// Spring rates.
+    pub stiffness: Unit,
+    /// Angles.
+    pub angle: Unit,
+    /// Durations.
+    pub time: Unit,
+}
+
+impl Design {
+    /// The cam's paths.
+    ///
+    /// # Errors
+    /// [`CutError`] where there are none; for a design that was resolved there are.
+    pub fn cut(&self) -> Result<Arc<Cut>, CutError> {
+        Cut::new(self.purpose.clone()).map(Arc::new)
+    }
+
+    /// The mechanism on a cam that was cut.
+    pub fn mechanism(&self, cut: &Arc<Cut>) -> Mechanism {
+        let built = &self.built;
+        let flaws = |side: usize| {
+            let tilt = if side == 0 { built.tilt_rad } else { -built.tilt_rad };
+            Flaws {
+                turn_rad: built.turn_rad[side] + tilt,
+                shift_m: [built.offset_m[side], built.height_m],
+                swell_m: built.roller_m - self.cut_roller_m,
+                ..Flaws::default()
+            }
+        };
+        Mechanism {
+            paths: [0, 1].map(|side| SidePath::new(Arc::clone(cut), side, self.cut_roller_m, &flaws(side))),
+            brace_m: built.brace_m,
+            roller_m: built.roller_m,
+            arm_m: built.arm_m,
+            springs: Bank::new(built.springs.clone(), built.extension),
+            bodies: built.bodies,
+            gravity_m_per_s2: built.gravity_m_per_s2,
+            rise_m: cut.rise_m(0),
+        }
+    }
+}
+
+pub(crate) fn si(slot: &Slot<Quantity>) -> Option<f64> {
+    slot.as_ref().map(|l| l.value.si)
+}
+
+fn unit_or(slot: Option<&Located<Quantity>>, symbol: &str, dimension: Dimension) -> Unit {
+    slot.map(|l| l.value.unit.clone()).or_else(|| Unit::parse(symbol).ok()).unwrap_or_else(|| Unit::si(dimension))
+}
+
+/// Reads a design from what was typed. Everything wrong goes into `diagnostics`.
+pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
+    let materials = materials_of(spec, diagnostics);
+    let extension = spec.design.arrangement.as_ref().is_none_or(|a| a.value == "tension");
+    let purpose = profile::purpose_of(spec, extension, diagnostics);
+    let springs = springs::mounted(spec, diagnostics);
+    let arm = rolling_arm(spec, diagnostics);
+    let requirements = requirements_of(spec, diagnostics);
+    let motion = motion_of(spec, diagnostics);
+    if diagnostics.has_errors() {
+        return None;
+    }
+    let (purpose, springs) = (purpose?, springs?);
+    let cut = match Cut::new(purpose.clone()) {
+        Ok(cut) => cut,
+        Err(error) => {
+            diagnostics.push(cannot_be_cut(&error, spec));
+            return None;
+        }
+    };
+    let window_m = window_of(spec, &purpose, diagnostics);
+    check_motion(spec, &purpose, motion.as_ref(), diagnostics);
+    let roller_m = 0.5 * si(&spec.design.roller_diameter)?;
+    check_rollers(spec, &cut, roller_m, diagnostics);
+    if diagnostics.has_errors() {
+        return None;
+    }
+    let built = built_of(spec, springs, extension, (roller_m, arm?))?;
+    Some(Design {
+        title: spec.header.title.as_ref().map_or_else(|| "Cam mechanism".to_owned(), |t| t.value.clone()),
+        purpose,
+        cut_roller_m: roller_m,
+        built,
+        motion,
+        free_guide: spec.motion.guide.as_ref().is_some_and(|g| g.value == "free"),
+        materials,
+        friction: si(&spec.design.friction),
+        requirements,
+        window_m,
+        units: display_units(spec),
+    })
+}
+
+fn built_of(spec: &Spec, springs: Vec<Spring>, extension: bool, (roller_m, arm_m): (f64, f64)) -> Option<Built> {
+    let (design, errors) = (&spec.design, &spec.errors);
+    let brace = si(&design.brace_length)?;
+    let sum = |both: &Slot<Quantity>, one: &Slot<Quantity>| si(both).unwrap_or(0.0) + si(one).unwrap_or(0.0);
+    let mass = |slot: &Slot<Quantity>| si(slot).unwrap_or(0.0);
+    let bodies = &design.bodies;
+    Some(Built {
+        brace_m: [brace, si(&design.brace_length_left).unwrap_or(brace)],
+        roller_m,
+        arm_m,
+        thickness_m: si(&design.cam_thickness),
+        springs,
+        extension,
+        max_length_m: si(&design.springs.max_length),
+        min_length_m: si(&design.springs.min_length),
+        bodies: Bodies {
+            slider_kg: mass(&bodies.slider_mass),
+            brace_kg: mass(&bodies.brace_mass),
+            brace_kg_m2: mass(&bodies.brace_inertia),
+            roller_kg: mass(&bodies.roller_mass),
+            roller_kg_m2: mass(&bodies.roller_inertia),
+            springs: match spec.model.spring_mass.as_ref().map(|m| m.value) {
+                Some("halves") => SpringMass::Halves,
+                _ => SpringMass::Bar,
+            },
+        },
+        gravity_m_per_s2: si(&spec.environment.gravity).unwrap_or(0.0),
+        tilt_rad: mass(&errors.tilt),
+        turn_rad: [
+            sum(&errors.profile_rotation, &errors.profile_rotation_right),
+            sum(&errors.profile_rotation, &errors.profile_rotation_left),
+        ],
+        offset_m: [sum(&errors.profile_offset, &errors.profile_offset_right), sum(&errors.profile_offset, &errors.profile_offset_left)],
+        height_m: mass(&errors.profile_height),
+    })
+}
+
+/// Both keys say the same thing.
+fn exclude<A, B>(first: &Slot<A>, second: &Slot<B>, names: [&str; 2], diagnostics: &mut Diagnostics) {
+    if let (Some(first), Some(second)) = (first, second) {
+        diagnostics.push(
+            Diagnostic::error("E0305", second.span, format!("`{}` and `{}` exclude each other", names[0], names[1]))
+                .label("the second of two")
+                .related(first.span, "the first")
+                .help("keep one"),
+        );
+    }
+}
+
+fn missing(span: Span, what: &str, help: &str) -> Diagnostic {
+    Diagnostic::error("E0302", span, format!("{what} is missing")).label("from this table").help(help)
+}
+
+fn place_of<T>(section: &Section<T>) -> Span {
+    section.present.as_ref().map(|p| p.span).unwrap_or_default()
+}
+
+/// The arm of the rolling resistance, m; without one there is no friction.
+fn rolling_arm(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<f64> {
+    let design = &spec.design;
+    exclude(&design.rolling_arm, &design.rolling_friction, ["rolling_arm", "rolling_friction"], diagnostics);
+    let radius = 0.5 * si(&design.roller_diameter)?;
+    Some(si(&design.rolling_arm).or(si(&design.rolling_friction).map(|mu| mu * radius)).unwrap_or(0.0))
+}
+
+fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Requirements> {
+    let requirements = &spec.requirements;
+    requirements.present.as_ref()?;
+    exclude(&requirements.profile, &requirements.profile_file, ["profile", "profile_file"], diagnostics);
+    let profile = profile::law_of(&requirements.profile, &requirements.profile_file, diagnostics);
+    let nominal = &requirements.force.nominal;
+    let given = requirements.profile.is_some() || requirements.profile_file.is_some();
+    if let (true, Some(nominal)) = (given, nominal) {
+        diagnostics.push(
+            Diagnostic::error("E0305", nominal.span, "`nominal` and a profile exclude each other").label("one level").help("keep one"),
+        );
+    }
+    let level = profile.or_else(|| nominal.as_ref().map(|n| ForceLaw::constant(n.value.si)));
+    let sound = !diagnostics.has_errors();
+    let band = si(&requirements.force.band);
+    if let (true, Some(section), None) = (sound, &requirements.force.present, &level) {
+        diagnostics.push(missing(section.span, "`nominal`", "give `nominal = \"50 N\"`, or a `profile` in `[requirements]`"));
+    }
+    if let (true, Some(located), None) = (sound, &requirements.profile, band) {
+        diagnostics.push(missing(located.span, "how far the force may be from this profile", "add `force = { band = \"2 %\" }`"));
+    }
+    Some(Requirements {
+        force: level.zip(band),
+        stroke_m: si(&requirements.stroke),
+        hysteresis: si(&requirements.hysteresis),
+        limits: requirements.limits.resolve(diagnostics),
+    })
+}
+
+fn window_of(spec: &Spec, purpose: &Purpose, diagnostics: &mut Diagnostics) -> Option<[f64; 2]> {
+    let window = spec.requirements.window.as_ref()?;
+    let [from, to] = [window.value[0].si, window.value[1].si];
+    let stroke = purpose.stroke_m * (1.0 + 1e-9);
+    if from < to && to <= stroke {
+        return Some([from, to.min(purpose.stroke_m)]);
+    }
+    diagnostics.push(
+        Diagnostic::error("E0606", window.span, "the window does not lie in the stroke")
+            .label("from and to, in the travel of the slider")
+            .help(format!("give a smaller and a larger travel up to {}", spec.design.stroke.as_ref().map_or_else(String::new, |s| s.value.to_string()))),
+    );
+    None
+}
+
+fn motion_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Motion> {
+    let motion = &spec.motion;
+    let law = match motion.law.as_ref()?.value {
+        "polynomial" => Law::Polynomial,
+        "uniform" => Law::Uniform,
+        _ => Law::Cycloidal,
+    };
+    let place = place_of(motion);
+    let mut need = |slot: &Slot<Quantity>, name: &str, example: &str| {
+        if slot.is_none() {
+            diagnostics.push(missing(place, &format!("`{name}`"), &format!("a motion has `start`, `rise` and `duration`; add `{name} = \"{example}\"`")));
+        }
+        si(slot)
+    };
+    let (start, rise, duration) =
+        (need(&motion.start, "start", "30 mm"), need(&motion.rise, "rise", "100 mm"), need(&motion.duration, "duration", "0.5 s"));
+    Some(Motion { law, start_m: start?, rise_m: rise?, duration_s: duration?, reference_s: si(&motion.reference_duration) })
+}
+
+fn check_motion(spec: &Spec, purpose: &Purpose, motion: Option<&Motion>, diagnostics: &mut Diagnostics) {
+    let Some(motion) = motion else { return };
+    let end = motion.start_m + motion.rise_m;
+    let inside = |s: f64| s >= -1e-9 && s <= purpose.stroke_m * (1.0 + 1e-9);
+    if inside(motion.start_m) && inside(end) {
+        return;
+    }
+    let place = spec.motion.rise.as_ref().map_or_else(Span::default, |r| r.span);
+    diagnostics.push(
+        Diagnostic::error("E0605", place, "the motion leaves the stroke for which the cam is cut")
+            .label("from `start`, by so much")
+            .related(spec.design.stroke.as_ref().map_or_else(Span::default, |s| s.span), "the stroke")
+            .help("shorten `rise`, or move `start`"),
+    );
+}
+
+/// Rollers must find room beside the axis and beside each other.
+fn check_rollers(spec: &Spec, cut: &Cut, roller_m: f64, diagnostics: &mut Diagnostics) {
+    let [from, to] = cut.range_m();
+    let reach = |side: usize, at: f64| cut.at(side, at).x.value();
+    let least = [from, to].into_iter().flat_map(|at| [reach(0, at), reach(1, at)]).fold(f64::INFINITY, f64::min);
+    if least < roller_m && spec.design.arrangement.as_ref().is_some_and(|a| a.value == "compression") {
+        let place = spec.design.roller_diameter.as_ref().map_or_else(Span::default, |r| r.span);
+        diagnostics.push(
+            Diagnostic::error("E0607", place, "the rollers run into each other")
+                .label("at the end of the stroke")
+                .help("choose longer springs, a shorter stroke or smaller rollers"),
+        );
+    }
+}
+
+fn cannot_be_cut(error: &CutError, spec: &Spec) -> Diagnostic {
+    let place = place_of(&spec.design.profile);
+    let shown = |travel_m: &f64| {
+        let unit = unit_or(spec.design.stroke.as_ref(), "mm", Dimension::Length);
+        forcewright_base::units::format_si(*travel_m, &unit, 4)
+    };
+    match error {
+        CutError::BraceTooShort { travel_m } => Diagnostic::error("E0601", place, "the path of a roller leaves the reach of its brace")
+            .label("for this force and these springs")
+            .help(format!("it does not beyond a stroke of {}; choose longer braces, stiffer springs or a shorter stroke", shown(travel_m))),
+        CutError::Locks { travel_m } => Diagnostic::error("E0602", place, "with the friction that is compensated the rollers lock")
+            .label("for this force and these springs")
+            .help(format!("they do from a travel of {} on; compensate less friction, or shorten the stroke", shown(travel_m))),
+        CutError::SpringsGiveNoForce { travel_m } => Diagnostic::error("E0603", place, "these springs cannot do the work that is asked for")
+            .label("for this force and these springs")
+            .help(format!(
+                "at a travel of {} they give no force: their length at the start must be at least the rest length (at most, with compression springs)",
+                shown(travel_m)
+            )),
+    }
+}
+
+fn display_units(spec: &Spec) -> DisplayUnits {
+    let design = &spec.design;
+    let force = spec.requirements.force.nominal.as_ref().or(design.profile.for_force.as_ref());
+    let rate = design.profile.for_rate.as_ref().or(design.springs.rate.as_ref());
+    DisplayUnits {
+        travel: unit_or(design.stroke.as_ref(), "mm", Dimension::Length),
+        length: unit_or(design.brace_length.as_ref(), "mm", Dimension::Length),
+        force: unit_or(force, "N", Dimension::Force),
+        stiffness: unit_or(rate, "N/mm", Dimension::Stiffness),
+        angle: unit_or(spec.errors.tilt.as_ref().filter(|t| t.origin == Origin::File), "deg", Dimension::Angle),
+        time: unit_or(spec.motion.duration.as_ref(), "s", Dimension::Time),
+    }
+}
+
+/// Materials of cam and roller, filled from the catalogue.
+fn materials_of(spec: &mut Spec, diagnostics: &mut Diagnostics) -> [Option<Material>; 2] {
+    let spec::Materials { cam, roller } = &mut spec.material.body;
+    [cam, roller].map(|section| {
+        section.present.as_ref()?;
+        Some(fill(&mut section.body, diagnostics))
+    })
+}
+
+fn fill(material: &mut spec::Material, diagnostics: &mut Diagnostics) -> Material {
+    let mut sources = Vec::new();
+    let mut name = "given by its values".to_owned();
+    if let Some(wanted) = &material.catalogue {
+        if let Some(entry) = materials::find(&wanted.value) {
+            name.clone_from(&entry.name);
+            let place = wanted.span;
+            let mut take = |slot: &mut Slot<Quantity>, property: Option<&'static materials::Property>, dimension: Dimension, unit: &str| {
+                let (None, Some(property)) = (&slot, property) else { return };
+                let mut quantity = Quantity::from_si(property.value, dimension);
+                if let Ok(unit) = Unit::parse(unit) {
+                    quantity.unit = unit;
+                }
+                let origin = Origin::Catalogue(format!("{}, {}", entry.name, property.kind.name()));
+                sources.extend(property.source_keys());
+                *slot = Some(Located { value: quantity, span: place, origin });
+            };
+            take(&mut material.young_modulus, entry.young_modulus_pa.as_ref(), Dimension::Stress, "GPa");
+            take(&mut material.poisson_ratio, entry.poisson_ratio.as_ref(), Dimension::Ratio, "1");
+            take(&mut material.yield_stress, entry.yield_stress_pa.as_ref(), Dimension::Stress, "MPa");
+            let _ = &entry.note;
+        } else {
+            let near = forcewright_base::text::closest(&wanted.value, materials::names());
+            diagnostics.push(
+                Diagnostic::error("E0308", wanted.span, format!("`{}` is not in the material catalogue", wanted.value))
+                    .label("no such entry")
+                    .help(near.map_or_else(|| "`forcewright materials` lists them".to_owned(), |n| format!("did you mean \"{n}\"?"))),
+            );
+        }
+    }
+    Material {
+        name,
+        young_pa: si(&material.young_modulus),
+        poisson: si(&material.poisson_ratio),
+        yield_pa: si(&material.yield_stress),
+        density_kg_per_m3: si(&material.density),
+        sources,
+    }
+}
+
+/// One side of a cut.
+fn cut_sides(spec: &Spec) -> Option<[CutSide; SIDES]> {
+    let brace = si(&spec.design.brace_length)?;
+    let share = si(&spec.design.profile.share_right)?;
+    let left = si(&spec.design.brace_length_left).unwrap_or(brace);
+    Some([CutSide { brace_m: brace, share }, CutSide { brace_m: left, share: 1.0 - share }])
+}

@@ -1,0 +1,92 @@
+//! What the cam was cut for, and force profiles.
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
+use forcewright_base::units::{Dimension, Quantity};
+use forcewright_contract::data::{Column, DataFile, rows};
+use forcewright_contract::describe::{Located, Slot};
+
+use super::springs::table_of;
+use super::{cut_sides, exclude, missing, place_of, si};
+use crate::cut::Purpose;
+use crate::law::{ForceLaw, LawError};
+use crate::spec::Spec;
+use crate::springs::{Bank, Spring, SpringLaw};
+
+/// Of a file.
+const MOST_ROWS: usize = 500;
+
+/// What the cam was cut for; `None` after an error.
+pub(super) fn purpose_of(spec: &Spec, extension: bool, diagnostics: &mut Diagnostics) -> Option<Purpose> {
+    let profile = &spec.design.profile;
+    let place = place_of(profile);
+    let law = wanted(spec, place, diagnostics);
+    exclude(&profile.for_rate, &profile.for_curve, ["for_rate", "for_curve"], diagnostics);
+    let spring = match &profile.for_curve {
+        Some(curve) => table_of(curve, diagnostics).map(SpringLaw::Table),
+        None => {
+            let example = "give `for_rate = \"1.38 N/mm\"` and `for_rest_length = \"136 mm\"`";
+            if profile.for_rate.is_none() {
+                diagnostics.push(missing(place, "`for_rate`", example));
+            }
+            if profile.for_rest_length.is_none() {
+                diagnostics.push(missing(place, "`for_rest_length`", example));
+            }
+            si(&profile.for_rate)
+                .zip(si(&profile.for_rest_length))
+                .map(|(rate_n_per_m, rest_m)| SpringLaw::Linear { rate_n_per_m, rest_m })
+        }
+    };
+    let start = si(&profile.for_start_length).or(si(&profile.for_rest_length));
+    if let (Some(_), None) = (&profile.for_curve, start) {
+        diagnostics.push(missing(place, "`for_start_length`", "with `for_curve` give the length of the springs where the path starts"));
+    }
+    let friction = si(&profile.for_friction)?;
+    let down = profile.compensate.as_ref().is_some_and(|c| c.value == "down");
+    Some(Purpose {
+        law: law?,
+        springs: Bank::new(vec![Spring { law: spring?, stretch_m: 0.0, mass_kg: 0.0 }], extension),
+        start_length_m: start?,
+        sides: cut_sides(spec)?,
+        friction: if down { -friction } else { friction },
+        stroke_m: si(&spec.design.stroke)?,
+    })
+}
+
+/// The force that is wanted.
+fn wanted(spec: &Spec, place: Span, diagnostics: &mut Diagnostics) -> Option<ForceLaw> {
+    let profile = &spec.design.profile;
+    exclude(&profile.for_force, &profile.for_profile, ["for_force", "for_profile"], diagnostics);
+    exclude(&profile.for_force, &profile.for_profile_file, ["for_force", "for_profile_file"], diagnostics);
+    exclude(&profile.for_profile, &profile.for_profile_file, ["for_profile", "for_profile_file"], diagnostics);
+    if let Some(force) = &profile.for_force {
+        return Some(ForceLaw::constant(force.value.si));
+    }
+    if profile.for_profile.is_none() && profile.for_profile_file.is_none() && !diagnostics.has_errors() {
+        diagnostics.push(missing(place, "the force", "give `for_force = \"50 N\"`, `for_profile = [[\"0 mm\", \"40 N\"], [\"240 mm\", \"60 N\"]]` or `for_profile_file`"));
+    }
+    law_of(&profile.for_profile, &profile.for_profile_file, diagnostics)
+}
+
+/// A force over the travel, typed or from a file; `None` without one or after an error.
+pub(super) fn law_of(typed: &Slot<Vec<Located<[Quantity; 2]>>>, file: &Slot<DataFile>, diagnostics: &mut Diagnostics) -> Option<ForceLaw> {
+    let points: Vec<([f64; 2], Span)> = if let Some(typed) = typed {
+        typed.value.iter().map(|p| (p.value.each_ref().map(|q| q.si), p.span)).collect()
+    } else {
+        let columns = [Column { name: "travel", dimension: Dimension::Length }, Column { name: "force", dimension: Dimension::Force }];
+        let found = rows(&file.as_ref()?.value, &columns, MOST_ROWS, diagnostics)?;
+        found.iter().map(|cells| (cells.map(|c| c.si), cells[0].span)).collect()
+    };
+    let plain: Vec<[f64; 2]> = points.iter().map(|p| p.0).collect();
+    let error = match ForceLaw::through(&plain) {
+        Ok(law) => return Some(law),
+        Err(error) => error,
+    };
+    let (index, message, help) = match error {
+        LawError::Empty => (0, "a profile needs a point", "give travel and force"),
+        LawError::NotRising(i) => (i, "this travel does not lie beyond the one before it", "list the points in the order of their travel"),
+        LawError::NotPositive(i) => (i, "this force is not above zero", "the springs can only be stretched on while the force does work: give a force above zero"),
+    };
+    let span = points.get(index).map(|p| p.1).or(typed.as_ref().map(|t| t.span)).unwrap_or_default();
+    diagnostics.push(Diagnostic::error("E0604", span, message).label("this point").help(help));
+    None
+}

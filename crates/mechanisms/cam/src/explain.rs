@@ -1,0 +1,69 @@
+//! The long story behind every code of this family.
+
+use forcewright_base::diagnostics::Explanation;
+
+const fn code(code: &'static str, title: &'static str, text: &'static str) -> Explanation {
+    Explanation { code, title, text }
+}
+
+/// Checks `CAM…`, errors of the design `E06…`, warnings `W06…`.
+pub(crate) const CODES: &[Explanation] = &[
+    code(
+        "CAM001",
+        "force band",
+        "The force on the slider, moving up and moving back, stays within `requirements.force.band` of the required level, or of the required profile, over the window. The value is the largest |F/F_required − 1|.\n\nFriction spreads the two directions apart by about μ(1 + f²)A/Δ on either side (`docs/theory/cam.md`), more at the end of the stroke than at its start; a rest length that is wrong by dL changes the force by −dL/(2Δ), most at the start.",
+    ),
+    code("CAM002", "stroke", "The travel for which the cam is cut, as far as the mechanism can be assembled, against `requirements.stroke`."),
+    code(
+        "CAM003",
+        "undercut",
+        "The cam is the path of the rollers' centres offset by their radius r. Where the path's radius of curvature ϱ is smaller than r there is no such cam: its offset has a cusp, and below it the roller turns about the corner that is left (1 − r/ϱ < 0; R. L. Norton, Cam Design and Manufacturing Handbook, chapter 7). The travel below is lost for the wanted force; `undercut_travel` says how much.\n\nThe path of a constant-force cam is curved most at its start, where the springs have no force yet: ϱ(x0) = (1 + tan²α0)^{3/2}/(1/A + l²/(l² − x0²)^{3/2}) with A = F/4K. Smaller rollers, longer braces and springs that are already stretched at the start (`for_start_length`) remove it. The mechanism of Sánchez-Salinas et al. is undercut over its first 0.52 mm.",
+    ),
+    code(
+        "CAM004",
+        "hysteresis",
+        "(Mean up − mean down)/mean of the force over the window, against `requirements.hysteresis`. With rolling resistance alone it is about 2μ times the mean of (1 + f²)A/Δ; it does not depend on the springs' rate.",
+    ),
+    code("CAM005", "springs not over-extended", "Largest length of the springs over the stroke against `design.springs.max_length`. Beyond, an extension spring is deformed for good."),
+    code("CAM006", "springs not solid", "Smallest length of the springs over the stroke against `design.springs.min_length`. Below, the coils of a compression spring touch."),
+    code(
+        "CAM007",
+        "rollers stay on the cam",
+        "The cam only pushes. The normal force between roller and cam must stay above zero: at rest in both directions, and in the motion, where the rollers' inertia takes from it.",
+    ),
+    code(
+        "CAM008",
+        "a pulling cable stays taut",
+        "In a quick motion the slider has to be braked before its end. A cable cannot do that: where the force falls below zero it goes slack and the motion is another one. For what pulls by a rod this is of no matter; it is therefore not required.",
+    ),
+    code(
+        "CAM009",
+        "friction needed for rolling",
+        "Tangential over normal force between roller and cam, the largest over stroke and directions. More than the friction that is there (`design.friction`), and the rollers slide instead of rolling.",
+    ),
+    code("CAM012", "limit on a metric", "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have is *not assessed*, which does not count as met."),
+    code(
+        "E0601",
+        "the path leaves the reach of a brace",
+        "A roller is never further from the axis than its brace is long. With soft springs, or much force over a long stroke, it would have to be. The message names the stroke up to which there is a path.",
+    ),
+    code(
+        "E0602",
+        "friction locks the rollers",
+        "With `for_friction` the cam is cut so that the force is right in spite of friction in one direction. Where the path is steep against the braces, so much friction locks the rollers: no path gives the force.",
+    ),
+    code(
+        "E0603",
+        "springs give no force",
+        "The springs have to store the work of the wanted force. Extension springs that are shorter at the start than without force, compression springs that are longer, cannot; nor can springs whose force falls on the way.",
+    ),
+    code("E0604", "a force profile cannot be cut", "A profile is a list of travels in rising order with forces above zero. Where the force were zero or less, the springs would have to relax, and the path would turn back."),
+    code("E0605", "the motion leaves the stroke", "`motion.start` and `motion.start + motion.rise` must lie within `design.stroke`, for which the cam is cut."),
+    code("E0606", "the window does not lie in the stroke", "`requirements.window` is a smaller and a larger travel within `design.stroke`."),
+    code("E0607", "the rollers run into each other", "With compression springs the rollers come closer over the stroke. Their centres must stay a roller's radius away from the axis."),
+    code("E0608", "a spring's curve is not one", "A curve of a spring is at least two pairs of length and force, the lengths rising."),
+    code("W0601", "the window holds the undercut", "Below the undercut travel the roller turns about a corner, and the force is not the one that was wanted. Begin the window beyond it, or remove the undercut (CAM003)."),
+    code("W0602", "springs are slack", "Springs shorter than their rest length (extension) or longer (compression) are computed with their straight line continued; real ones have no force there."),
+    code("W0603", "the slider needs its guide", "The force across the travel grows with the distance from the axis in the direction of that distance: a slider without a guide leaves the axis. Guides carry `guide_force_max`."),
+    code("W0604", "the rollers slide", "More tangential force than friction gives. Sliding rollers wear, and their friction is larger than computed."),
+];

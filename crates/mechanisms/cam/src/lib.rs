@@ -1,0 +1,142 @@
+//! Cam-and-spring mechanisms with a prescribed force: the family.
+//!
+//! Source: S. Sánchez-Salinas, A. García-Agúndez, J. López-Martínez, D. García-Vallejo, "Experimental validation of a constant-force
+//! mechanism and analysis of its performance with a calibrated multibody model", Mechanism and Machine Theory 173 (2022). Theory,
+//! corrections and limits of validity: `docs/theory/cam.md`.
+
+mod analysis;
+mod checks;
+mod cut;
+mod design;
+mod explain;
+mod figures;
+mod jet;
+mod law;
+mod mechanism;
+mod metrics;
+mod motion;
+mod parts;
+mod path;
+mod reproduce;
+mod scene;
+mod spec;
+mod springs;
+mod statements;
+mod study;
+
+use forcewright_base::diagnostics::{Diagnostics, Explanation};
+use forcewright_contract::family::{Analysis, Mechanism as Family, Progress, Reproduction};
+use forcewright_contract::studies::{Free, Purpose as StudyPurpose, Studies};
+use forcewright_model::{Counter, Metric, NoPart, Outcome, PartSet, Status, StatusKind};
+use forcewright_study::evaluator::Evaluator;
+use forcewright_study::task::Task;
+
+pub use analysis::{Behaviour, Measured, Station, measure};
+pub use cut::{Cut, CutError, CutSide, PathPoint, Purpose, SIDES};
+pub use design::{Built, Design, DisplayUnits, Material, Requirements};
+pub use jet::Jet;
+pub use law::{ForceLaw, LawError};
+pub use mechanism::{Bodies, Drive, Instant, Mechanism, NotAssembled, Pose, Sense, SideForces, SpringMass};
+pub use metrics::METRICS;
+pub use motion::{Law, Moment, Motion};
+pub use path::{Corner, Flaws, MeasuredPath, NormalError, Place, SidePath, Vector, curvature_per_m, frame};
+pub use spec::Spec;
+pub use springs::{Bank, Spring, SpringLaw};
+
+/// The family.
+pub struct Cam;
+
+impl Family for Cam {
+    type Spec = Spec;
+    type Design = Design;
+
+    const ID: &'static str = "cam";
+    const TITLE: &'static str = "Cam-and-spring mechanism";
+
+    fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
+        design::resolve(spec, diagnostics)
+    }
+
+    fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
+        let model = statements::model(design);
+        let limits = statements::limits(design);
+        let behaviour = match Behaviour::of(design) {
+            Ok(behaviour) => behaviour,
+            Err(error) => return refused(design, format!("the cam cannot be cut: {error:?}")),
+        };
+        progress(1.0);
+        let measured = measure(design, &behaviour);
+        let outcome = Outcome {
+            mechanism: Self::ID,
+            title: design.title.clone(),
+            status: statements::status(design, &behaviour),
+            error_estimate: None,
+            metrics: metrics_of(design, &measured),
+            checks: checks::checks(design, &behaviour, &measured),
+            curves: figures::curves(design, &behaviour),
+            counters: vec![
+                Counter { name: "stations", count: (behaviour.stations.len() + behaviour.window.len()) as u64 },
+                Counter { name: "path_evaluations", count: behaviour.evaluations },
+            ],
+            sources: statements::sources(design),
+            warnings: statements::warnings(design, &behaviour, &measured),
+        };
+        Analysis { outcome, figures: figures::figures(design, &behaviour, &measured), model, limits }
+    }
+
+    fn parts(design: &Design) -> Result<PartSet, NoPart> {
+        parts::parts(design)
+    }
+
+    fn studies(spec: &Spec) -> &Studies {
+        &spec.studies
+    }
+
+    fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
+        study::evaluator(spec, design, free, diagnostics)
+    }
+
+    fn task(spec: &Spec, design: &Design, free: &[Free], purpose: StudyPurpose, diagnostics: &mut Diagnostics) -> Option<Task> {
+        study::task(spec, design, free, purpose, diagnostics)
+    }
+
+    fn explanations() -> &'static [Explanation] {
+        explain::CODES
+    }
+
+    fn reproductions() -> &'static [Reproduction] {
+        reproduce::ALL
+    }
+}
+
+/// The metrics as outputs see them.
+fn metrics_of(design: &Design, measured: &Measured) -> Vec<Metric> {
+    let one = |(index, info): (usize, &forcewright_contract::metrics::MetricInfo)| {
+        Some(Metric {
+            name: info.name,
+            value: measured.value(index)?,
+            dimension: info.dimension,
+            display: checks::display_unit(design, index),
+            doc: info.doc,
+            key: info.key,
+        })
+    };
+    METRICS.iter().enumerate().filter_map(one).collect()
+}
+
+/// An analysis that could not begin.
+fn refused(design: &Design, message: String) -> Analysis {
+    let outcome = Outcome {
+        mechanism: Cam::ID,
+        title: design.title.clone(),
+        status: Status { kind: StatusKind::NotConverged, message, advice: None },
+        error_estimate: None,
+        metrics: Vec::new(),
+        checks: Vec::new(),
+        curves: Vec::new(),
+        counters: Vec::new(),
+        sources: statements::sources(design),
+        warnings: Vec::new(),
+    };
+    Analysis { outcome, figures: Vec::new(), model: statements::model(design), limits: statements::limits(design) }
+}

@@ -1,0 +1,77 @@
+//! Names of the metrics: stable, so that requirements, studies and scripts agree.
+
+use forcewright_base::units::Dimension;
+use forcewright_contract::metrics::{MetricInfo, Metrics, metric};
+
+/// The metrics of this family.
+#[derive(Debug, Default)]
+pub struct CamMetrics;
+
+impl Metrics for CamMetrics {
+    const ALL: &'static [MetricInfo] = METRICS;
+}
+
+/// Every metric of the family, in the order of results.
+pub const METRICS: &[MetricInfo] = &[
+    metric("force_mean", Dimension::Force, true, "Mean of the force without friction over the window."),
+    metric("force_up_mean", Dimension::Force, true, "Mean of the force over the window, slider moving along its travel."),
+    metric("force_up_sd", Dimension::Force, false, "Standard deviation of that force over the window."),
+    metric("force_up_max", Dimension::Force, false, "Largest force over the window, slider moving along its travel."),
+    metric("force_up_min", Dimension::Force, false, "Smallest force over the window, slider moving along its travel."),
+    metric("force_down_mean", Dimension::Force, true, "Mean of the force over the window, slider moving back."),
+    metric("force_down_sd", Dimension::Force, false, "Standard deviation of that force over the window."),
+    metric("force_down_max", Dimension::Force, false, "Largest force over the window, slider moving back."),
+    metric("force_down_min", Dimension::Force, false, "Smallest force over the window, slider moving back."),
+    metric(
+        "force_deviation",
+        Dimension::Ratio,
+        true,
+        "Largest distance of the force, up or down, from what is required, relative to it, over the window.",
+    ),
+    metric(
+        "force_spread",
+        Dimension::Ratio,
+        false,
+        "Half width of the band that the force needs over the window, up and down, its level free: (max − min)/(max + min).",
+    ),
+    metric("loop_area", Dimension::Energy, true, "Work lost to friction in one cycle over the window."),
+    metric("hysteresis", Dimension::Ratio, true, "(mean up − mean down)/mean of the force over the window."),
+    metric("energy", Dimension::Energy, false, "Work of the force without friction over the whole stroke."),
+    metric("weight", Dimension::Force, false, "Part of the mean force that is weight of the moving parts, over the window."),
+    metric("path_curvature_radius_min", Dimension::Length, false, "Smallest radius of curvature of the path of the rollers' centres."),
+    metric("undercut_travel", Dimension::Length, true, "Travel at the start that is lost because the cam is undercut there."),
+    metric(
+        "pressure_angle_max",
+        Dimension::Angle,
+        false,
+        "Largest angle between the pull of a brace and the path of its roller, over the window; at 90° nothing moves it.",
+    ),
+    metric("spring_length_max", Dimension::Length, true, "Largest length of the springs over the stroke."),
+    metric("spring_length_min", Dimension::Length, false, "Smallest length of the springs over the stroke."),
+    metric("spring_force_max", Dimension::Force, false, "Largest force of all springs together over the stroke."),
+    metric("contact_force_max", Dimension::Force, false, "Largest force between a roller and the cam over the stroke."),
+    metric("contact_force_min", Dimension::Force, true, "Smallest force between a roller and the cam over the stroke; below zero it lifts off."),
+    metric("brace_tension_max", Dimension::Force, false, "Largest tension of a brace over the stroke."),
+    metric("brace_tension_min", Dimension::Force, false, "Smallest tension of a brace over the stroke; below zero a cable goes slack."),
+    metric("hertz_pressure_max", Dimension::Stress, true, "Largest pressure between roller and cam (Hertz, line contact)."),
+    metric("friction_needed_max", Dimension::Ratio, false, "Largest tangential over normal force between roller and cam: rolling needs so much friction."),
+    metric("guide_force_max", Dimension::Force, false, "Largest force across the travel that the guide of the slider carries."),
+    metric(
+        "lateral_stiffness_min",
+        Dimension::Stiffness,
+        false,
+        "Smallest restoring force per sideways motion of a slider without a guide, over the window; below zero it turns away.",
+    ),
+    metric("moving_mass", Dimension::Mass, false, "Mass of slider, braces, rollers and springs."),
+    metric("cam_length", Dimension::Length, false, "Extent of the cam along the travel, without its base."),
+    metric("peak_force_ratio", Dimension::Ratio, true, "Largest force in the motion over the quasi-static one at the same place, minus one."),
+    metric(
+        "peak_force_ratio_to",
+        Dimension::Ratio,
+        false,
+        "The same over the force of the motion that takes the reference duration, at the same part of the duration.",
+    ),
+    metric("force_max_motion", Dimension::Force, false, "Largest force in the motion."),
+    metric("force_min_motion", Dimension::Force, true, "Smallest force in the motion; below zero a cable that pulls the slider goes slack."),
+    metric("contact_force_min_motion", Dimension::Force, true, "Smallest force between a roller and the cam in the motion; below zero it lifts off."),
+];

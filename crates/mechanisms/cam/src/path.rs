@@ -1,0 +1,253 @@
+//! The path of a roller's centre on the cam as it was made: what it was cut for, moved and with its errors, and where the cam is
+//! undercut the corner on which the roller turns.
+
+use std::sync::Arc;
+
+use forcewright_base::maths;
+
+use crate::cut::Cut;
+use crate::jet::Jet;
+
+/// A plane vector.
+pub type Vector = [f64; 2];
+
+/// A deviation along the normal of a cam, over the arc length of the roller's path.
+pub trait NormalError: Send + Sync + std::fmt::Debug {
+    /// Deviation outwards (away from the cam), m, and its first two derivatives over the arc length.
+    fn at(&self, arc_m: f64) -> [f64; 3];
+}
+
+/// A path that was measured: a smooth curve over a parameter that rises with the travel.
+pub trait MeasuredPath: Send + Sync + std::fmt::Debug {
+    /// Point and its first two derivatives over λ.
+    fn at(&self, lambda_m: f64) -> Place;
+}
+
+/// A point of a path with its derivatives over λ.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Outwards and along the travel, m.
+    pub at: Vector,
+    /// First derivative.
+    pub slope: Vector,
+    /// Second derivative, 1/m.
+    pub bend: Vector,
+}
+
+/// Corner of an undercut cam: below it the roller turns about it.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    /// λ where the roller comes to it, m.
+    pub lambda_m: f64,
+    /// Travel s there, m.
+    pub travel_m: f64,
+    /// The corner itself in the coordinates of the cut, m.
+    pub at: Vector,
+}
+
+/// The path of one side.
+#[derive(Clone, Debug)]
+pub struct SidePath {
+    cut: Arc<Cut>,
+    side: usize,
+    roller_m: f64,
+    corner: Option<Corner>,
+    measured: Option<Arc<dyn MeasuredPath>>,
+    error: Option<(Arc<dyn NormalError>, Arc<ArcLength>)>,
+    /// Cosine and sine of the angle by which it is turned about the origin, towards the axis.
+    turn: Vector,
+    /// By how much it is shifted afterwards, m.
+    shift_m: Vector,
+    /// By how much it lies further from the cam than it was meant, m.
+    swell_m: f64,
+}
+
+/// Arc length of the path as designed, by λ: only errors of the profile need it.
+#[derive(Debug)]
+struct ArcLength {
+    /// λ, m; arc length, m; its slope.
+    rows: Vec<[f64; 3]>,
+}
+
+/// What is wrong with a side.
+#[derive(Clone, Debug, Default)]
+pub struct Flaws {
+    /// Angle by which the profile is turned about the origin, counted outwards to inwards, rad.
+    pub turn_rad: f64,
+    /// By how much it is shifted outwards and along the travel, m.
+    pub shift_m: Vector,
+    /// By how much the roller's centre runs further out than the one for which the cam was cut, along the normal: a larger roller, m.
+    pub swell_m: f64,
+    /// Deviation of the profile along its normal.
+    pub error: Option<Arc<dyn NormalError>>,
+    /// The path that was measured, in place of the one that was meant.
+    pub measured: Option<Arc<dyn MeasuredPath>>,
+}
+
+/// Rows of the table of arc length.
+const ARC_ROWS: usize = 512;
+/// Places looked at for an undercut.
+const LOOKS: usize = 400;
+
+impl SidePath {
+    /// The path of a roller of this radius on a side of the cam.
+    pub fn new(cut: Arc<Cut>, side: usize, roller_m: f64, flaws: &Flaws) -> Self {
+        let (sin, cos) = maths::sin_cos(flaws.turn_rad);
+        let corner = corner(&cut, side, roller_m);
+        let error = flaws.error.clone().map(|error| (error, Arc::new(ArcLength::of(&cut, side))));
+        let measured = flaws.measured.clone();
+        Self { cut, side, roller_m, corner, measured, error, turn: [cos, sin], shift_m: flaws.shift_m, swell_m: flaws.swell_m }
+    }
+
+    /// Where the cam is undercut; `None` if it is not.
+    pub fn corner(&self) -> Option<&Corner> {
+        self.corner.as_ref()
+    }
+
+    /// What it was cut for.
+    pub fn cut(&self) -> &Cut {
+        &self.cut
+    }
+
+    /// Whether two sides are alike.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let purpose = self.cut.purpose();
+        let same = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+        purpose.sides[0] == purpose.sides[1]
+            && self.swell_m.to_bits() == other.swell_m.to_bits()
+            && self.error.is_none()
+            && other.error.is_none()
+            && self.measured.is_none()
+            && other.measured.is_none()
+            && same(&self.turn, &other.turn)
+            && same(&self.shift_m, &other.shift_m)
+    }
+
+    /// The point of the path as it is made.
+    pub fn at(&self, lambda_m: f64) -> Place {
+        let place = if let Some(measured) = &self.measured {
+            measured.at(lambda_m)
+        } else {
+            match (&self.corner, &self.error) {
+                (Some(corner), _) if lambda_m < corner.lambda_m => self.on_corner(corner, lambda_m),
+                (_, None) if self.swell_m == 0.0 => self.designed(lambda_m),
+                (_, None) => self.deviating(lambda_m, [self.swell_m, 0.0, 0.0]),
+                (_, Some((error, arc))) => {
+                    let [e, slope, bend] = error.at(arc.at(lambda_m));
+                    self.deviating(lambda_m, [e + self.swell_m, slope, bend])
+                }
+            }
+        };
+        let [cos, sin] = self.turn;
+        let turned = |[x, y]: Vector| [cos * x - sin * y, sin * x + cos * y];
+        let [x, y] = turned(place.at);
+        Place { at: [x + self.shift_m[0], y + self.shift_m[1]], slope: turned(place.slope), bend: turned(place.bend) }
+    }
+
+    /// The path as it was meant, also where the cam that it needs is undercut.
+    pub fn designed(&self, lambda_m: f64) -> Place {
+        let p = self.cut.at(self.side, lambda_m);
+        let pick = |order: usize| [p.x.derivative(order), p.y.derivative(order)];
+        Place { at: pick(0), slope: pick(1), bend: pick(2) }
+    }
+
+    /// The roller turns about the corner: a circle that continues the path without a kink.
+    fn on_corner(&self, corner: &Corner, lambda_m: f64) -> Place {
+        let join = if self.swell_m == 0.0 { self.designed(corner.lambda_m) } else { self.deviating(corner.lambda_m, [self.swell_m, 0.0, 0.0]) };
+        let from = [join.at[0] - corner.at[0], join.at[1] - corner.at[1]];
+        let speed = maths::hypot(join.slope[0], join.slope[1]);
+        let rate = speed / (self.roller_m + self.swell_m) * (from[0] * join.slope[1] - from[1] * join.slope[0]).signum();
+        let (sin, cos) = maths::sin_cos(rate * (lambda_m - corner.lambda_m));
+        let arm = [cos * from[0] - sin * from[1], sin * from[0] + cos * from[1]];
+        Place {
+            at: [corner.at[0] + arm[0], corner.at[1] + arm[1]],
+            slope: [-rate * arm[1], rate * arm[0]],
+            bend: [-rate * rate * arm[0], -rate * rate * arm[1]],
+        }
+    }
+
+    /// The path with a deviation along its normal, given with its derivatives over the arc length.
+    fn deviating(&self, lambda_m: f64, [e0, e1, e2]: [f64; 3]) -> Place {
+        let p = self.cut.at(self.side, lambda_m);
+        let lower = |j: Jet| Jet([j.derivative(1), j.derivative(2), 0.5 * j.derivative(3), 0.0]);
+        let (dx, dy) = (lower(p.x), lower(p.y));
+        let speed = (dx * dx + dy * dy).sqrt();
+        // e as a series in λ: its arguments are arc lengths.
+        let [v, dv] = [speed.value(), speed.derivative(1)];
+        let e = Jet([e0, e1 * v, 0.5 * (e2 * v * v + e1 * dv), 0.0]);
+        let sense = self.cut.purpose().springs.sense();
+        let [nx, ny] = [dy / speed * sense, dx / speed * -sense];
+        let (x, y) = (p.x + e * nx, p.y + e * ny);
+        let pick = |order: usize| [x.derivative(order), y.derivative(order)];
+        Place { at: pick(0), slope: pick(1), bend: pick(2) }
+    }
+}
+
+/// Curvature of the path at a point, 1/m: positive where the cam is convex there.
+pub fn curvature_per_m(place: &Place, sense: f64) -> f64 {
+    let [dx, dy] = place.slope;
+    let speed = maths::hypot(dx, dy);
+    sense * (dx * place.bend[1] - dy * place.bend[0]) / (speed * speed * speed)
+}
+
+/// Unit vectors along the path and from the cam to the roller.
+pub fn frame(place: &Place, sense: f64) -> [Vector; 2] {
+    let [dx, dy] = place.slope;
+    let over = 1.0 / maths::hypot(dx, dy);
+    let along = [dx * over, dy * over];
+    [along, [sense * along[1], -sense * along[0]]]
+}
+
+/// The last place at which the roller is larger than the path's radius of curvature: below it the cam that would be needed does not
+/// exist (1 − r κ < 0).
+pub(crate) fn corner(cut: &Cut, side: usize, roller_m: f64) -> Option<Corner> {
+    let sense = cut.purpose().springs.sense();
+    let place = |lambda: f64| {
+        let p = cut.at(side, lambda);
+        let pick = |order: usize| [p.x.derivative(order), p.y.derivative(order)];
+        Place { at: pick(0), slope: pick(1), bend: pick(2) }
+    };
+    let left = |lambda: f64| 1.0 - roller_m * curvature_per_m(&place(lambda), sense);
+    let [from, to] = cut.range_m();
+    let at = |i: usize| from + (to - from) * i as f64 / LOOKS as f64;
+    // Closer together next to the start, where curvature is largest.
+    let dense = |i: usize| from + (at(1) - from) * i as f64 / LOOKS as f64;
+    let looks: Vec<f64> = (0..LOOKS).map(dense).chain((1..=LOOKS).map(at)).collect();
+    let last = looks.iter().rposition(|l| left(*l) < 0.0)?;
+    let lambda_m = match looks.get(last + 1) {
+        Some(next) => forcewright_base::roots::root(left, looks[last], *next, 1e-16).ok()?,
+        None => to,
+    };
+    let p = place(lambda_m);
+    let [_, normal] = frame(&p, sense);
+    let at = [p.at[0] - roller_m * normal[0], p.at[1] - roller_m * normal[1]];
+    Some(Corner { lambda_m, travel_m: cut.at(side, lambda_m).s.value(), at })
+}
+
+impl ArcLength {
+    fn of(cut: &Cut, side: usize) -> Self {
+        let [from, to] = cut.range_m();
+        let end = to + 0.1 * (to - from);
+        let speed = |lambda: f64| {
+            let p = cut.at(side, lambda);
+            maths::hypot(p.x.derivative(1), p.y.derivative(1))
+        };
+        let gauss = forcewright_base::quadrature::GaussLegendre::new(5);
+        let mut rows = vec![[from, 0.0, speed(from)]];
+        for i in 1..=ARC_ROWS {
+            let (a, b) = (rows[i - 1][0], from + (end - from) * i as f64 / ARC_ROWS as f64);
+            let length = gauss.integrate(|t| speed(a + (b - a) * t)) * (b - a);
+            rows.push([b, rows[i - 1][1] + length, speed(b)]);
+        }
+        Self { rows }
+    }
+
+    fn at(&self, lambda_m: f64) -> f64 {
+        let i = self.rows.partition_point(|r| r[0] <= lambda_m).clamp(1, self.rows.len() - 1);
+        let ([a, sa, va], [b, sb, vb]) = (self.rows[i - 1], self.rows[i]);
+        let h = b - a;
+        let t = (lambda_m - a) / h;
+        let u = 1.0 - t;
+        sa * (1.0 + 2.0 * t) * u * u + sb * t * t * (3.0 - 2.0 * t) + h * t * u * (va * u - vb * t)
+    }
+}

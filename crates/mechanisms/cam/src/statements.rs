@@ -1,0 +1,147 @@
+//! What a report says in words: status, model, limits, sources, warnings.
+
+use forcewright_base::units::{format_number, format_si};
+use forcewright_model::{Citation, Statement, Status, StatusKind, Warning};
+
+use crate::analysis::{Behaviour, Measured};
+use crate::design::Design;
+use crate::mechanism::SpringMass;
+
+fn statement(title: &str, text: impl Into<String>) -> Statement {
+    Statement { title: title.to_owned(), text: text.into() }
+}
+
+/// How the analysis ended.
+pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Status {
+    let travel = |s: f64| format_si(s, &design.units.travel, 4);
+    if let Some((s, why)) = behaviour.stopped {
+        let side = ["right", "left"][why.side];
+        return Status {
+            kind: StatusKind::NotConverged,
+            message: format!(
+                "from a travel of {} on the mechanism cannot be assembled: the {side} brace misses the path of its roller by {}",
+                travel(s),
+                format_si(why.gap_m.abs(), &design.units.length, 3)
+            ),
+            advice: Some("make the errors smaller, or the brace longer".to_owned()),
+        };
+    }
+    if design.motion.is_some() && behaviour.motion.is_none() {
+        return Status {
+            kind: StatusKind::NotConverged,
+            message: "the motion passes places where the mechanism cannot be assembled".to_owned(),
+            advice: Some("shorten `motion.rise`".to_owned()),
+        };
+    }
+    let end = travel(design.purpose.stroke_m);
+    Status { kind: StatusKind::Complete, message: format!("computed over the whole stroke of {end}, up and down"), advice: None }
+}
+
+/// Which equations were solved and how.
+pub(crate) fn model(design: &Design) -> Vec<Statement> {
+    let path = if design.purpose.friction == 0.0 {
+        "The work of the wanted force equals the energy of the springs, W(s) = E: the path of the rollers' centres follows in closed form, without integrating a differential equation. Derivatives are exact."
+    } else {
+        "The path follows from equilibrium with rolling friction in one direction, eq. (2) of Sánchez-Salinas et al. in the form that is regular at the start, integrated with a method of fifth order. Derivatives come from the equation itself."
+    };
+    let springs = match design.built.bodies.springs {
+        SpringMass::Bar => "The springs' mass moves as a bar between the axles: half of it along the travel, a sixth outwards with each roller.",
+        SpringMass::Halves => "Half of the springs' mass sits on each roller.",
+    };
+    vec![
+        statement("Cam", path),
+        statement(
+            "Forces",
+            "Slider, braces, rollers and springs by Newton and Euler at each instant, both sides by themselves, rolling resistance as a force μN against the way of each roller, μ the arm over the radius. At rest this is eq. (1) of Sánchez-Salinas et al.; without friction it is the Lagrangian with V(s) and M(s).",
+        ),
+        statement("Springs", springs),
+        statement(
+            "Window",
+            "Means, standard deviations and the loop are integrals over the travel of the window by Simpson's rule on 400 panels; extremes are taken at their ends and middles.",
+        ),
+    ]
+}
+
+/// What is not modelled.
+pub(crate) fn limits(design: &Design) -> Vec<Statement> {
+    let mut all = vec![
+        statement("Rigid parts", "Braces, axles and cam do not bend; the contact between roller and cam is stiff."),
+        statement(
+            "Friction",
+            "Only rolling resistance, in proportion to the normal force. Friction in joints, in the guide of the slider and between the coils of springs is not in the numbers.",
+        ),
+    ];
+    if design.motion.is_some() {
+        all.push(statement("Contact in the motion", "The rollers are kept on the cam also where they would lift off; the check of the contact says where that is."));
+    }
+    all
+}
+
+/// Works that were used.
+pub(crate) fn sources(design: &Design) -> Vec<Citation> {
+    let mut all = vec![Citation {
+        key: "sanchez2022",
+        text: "S. Sánchez-Salinas, A. García-Agúndez, J. López-Martínez, D. García-Vallejo: Experimental validation of a constant-force mechanism and analysis of its performance with a calibrated multibody model. Mechanism and Machine Theory 173 (2022) 104819.",
+        used_for: "arrangement, equilibrium with rolling friction (1), path (2)–(3), motion (17)",
+    }];
+    let mut keys: Vec<&'static str> = Vec::new();
+    for key in design.materials.iter().flatten().flat_map(|m| &m.sources) {
+        if !keys.contains(key) {
+            keys.push(key);
+        }
+    }
+    all.extend(keys.into_iter().map(|key| Citation {
+        key,
+        text: "Source of material data; see REFERENCES.bib.",
+        used_for: "values of the material catalogue",
+    }));
+    all
+}
+
+/// Things to know about a result.
+pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Warning> {
+    let mut all = Vec::new();
+    let travel = |s: f64| format_si(s, &design.units.travel, 4);
+    let lost = measured.get("undercut_travel").unwrap_or(0.0);
+    if lost > 0.0 && behaviour.window_m[0] < lost {
+        all.push(Warning {
+            code: "W0601",
+            message: format!(
+                "the cam is undercut up to a travel of {}, and the window begins at {}: part of its force is that of a roller on a corner",
+                travel(lost),
+                travel(behaviour.window_m[0])
+            ),
+        });
+    }
+    if let Some(slack) = behaviour.stations.iter().rfind(|s| s.still.spring_n * design.purpose.springs.sense() < 0.0) {
+        all.push(Warning {
+            code: "W0602",
+            message: format!(
+                "up to a travel of {} the springs are {} than without force: a real one goes slack there, and the force is smaller than computed",
+                travel(slack.travel_m),
+                if design.built.extension { "shorter" } else { "longer" }
+            ),
+        });
+    }
+    if let Some(k) = measured.get("lateral_stiffness_min")
+        && k < 0.0
+        && !design.free_guide
+    {
+        all.push(Warning {
+            code: "W0603",
+            message: format!(
+                "a slider that is free to move sideways turns away from the axis (lateral stiffness {}): it needs its guide",
+                format_si(k, &design.units.stiffness, 3)
+            ),
+        });
+    }
+    if let (Some(friction), Some(needed)) = (design.friction, measured.get("friction_needed_max"))
+        && needed > friction
+    {
+        all.push(Warning {
+            code: "W0604",
+            message: format!("rolling needs a friction of {}, {} is there: the rollers slide", format_number(needed, 3), format_number(friction, 3)),
+        });
+    }
+    all
+}

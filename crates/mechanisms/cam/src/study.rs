@@ -1,0 +1,27 @@
+//! The family seen by studies.
+
+mod knobs;
+mod many;
+mod task;
+
+use forcewright_base::diagnostics::Diagnostics;
+use forcewright_contract::studies::{Free, Purpose};
+use forcewright_study::evaluator::Evaluator;
+use forcewright_study::task::Task;
+
+use crate::design::Design;
+use crate::spec::Spec;
+use knobs::Knobs;
+use many::Many;
+
+/// The design as studies that look at many see it.
+pub(crate) fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
+    let knobs = Knobs::new(spec, free, Purpose::Scatter, diagnostics)?;
+    Some(Box::new(Many::new(design, knobs)))
+}
+
+/// The search that `[optimise]` asks for.
+pub(crate) fn task(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
+    let knobs = Knobs::new(spec, free, purpose, diagnostics)?;
+    task::task(design, knobs, &spec.studies.optimise.objective, diagnostics)
+}

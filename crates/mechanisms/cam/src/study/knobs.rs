@@ -1,0 +1,267 @@
+//! From the path of a number to what it changes in a design.
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
+use forcewright_contract::studies::{Free, Purpose};
+use forcewright_study::evaluator::Variable;
+
+use crate::design::Design;
+use crate::spec::Spec;
+use crate::springs::{Bank, Spring, SpringLaw};
+
+/// What a number changes. In a search the cam is cut anew for the design that is tried; the scatter of making leaves it as it was cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Knob {
+    /// Both braces, or the right one where the left one has its own.
+    Brace { left: bool },
+    LeftBrace,
+    RollerDiameter,
+    RollingArm,
+    RollingFriction,
+    Rate(usize),
+    RateOfAll,
+    RestLength,
+    Turns,
+    Pitch,
+    SpringMass,
+    SliderMass,
+    BraceMass,
+    BraceInertia,
+    RollerMass,
+    RollerInertia,
+    Gravity,
+    Tilt,
+    /// Right, left.
+    Turn([bool; 2]),
+    Offset([bool; 2]),
+    Height,
+    ForForce,
+    ForRate,
+    ForRestLength,
+    ForStartLength,
+    ForFriction,
+    Share,
+}
+
+/// The numbers of a study, understood.
+#[derive(Clone, Debug)]
+pub(super) struct Knobs {
+    each: Vec<Knob>,
+    pub(super) variables: Vec<Variable>,
+    /// Whether the cam is cut anew.
+    cuts: bool,
+    /// What a knob needs to know of the file.
+    file: FromFile,
+}
+
+/// Numbers that stand together in the file and apart in the design.
+#[derive(Clone, Copy, Debug, Default)]
+struct FromFile {
+    turns: f64,
+    pitch_m: f64,
+    turn_rad: [f64; 3],
+    offset_m: [f64; 3],
+    for_rate: f64,
+    for_rest_m: f64,
+    starts_at_rest: bool,
+    down: bool,
+    left_brace: bool,
+}
+
+impl Knobs {
+    /// Understands the numbers; what this family cannot change is reported.
+    pub(super) fn new(spec: &Spec, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Self> {
+        let cuts = purpose == Purpose::Search;
+        let before = diagnostics.errors();
+        let mut each = Vec::new();
+        for free in free {
+            match knob(spec, &free.number.path, cuts) {
+                Ok(knob) => each.push(knob),
+                Err(why) => diagnostics.push(
+                    Diagnostic::error("E0313", free.number.span, format!("a study cannot change `{}`", free.number.path))
+                        .label(why)
+                        .help("take it out of the study's numbers"),
+                ),
+            }
+        }
+        if diagnostics.errors() > before {
+            return None;
+        }
+        let variables = free.iter().map(|free| Variable {
+            path: free.number.path.clone(),
+            unit: free.number.dimension.si_symbol(),
+            nominal: free.number.si,
+            lower: free.lower,
+            upper: free.upper,
+        });
+        Some(Self { each, variables: variables.collect(), cuts, file: FromFile::of(spec) })
+    }
+
+    /// Whether a design tried has a cam of its own.
+    pub(super) fn cuts(&self) -> bool {
+        self.cuts
+    }
+
+    /// Changes a copy of the design.
+    pub(super) fn apply(&self, x: &[f64], design: &mut Design) {
+        let mut file = self.file;
+        for (knob, x) in self.each.iter().zip(x) {
+            self.turn(*knob, *x, design, &mut file);
+        }
+        // What several knobs may change together.
+        let built = &mut design.built;
+        for spring in &mut built.springs {
+            spring.stretch_m = file.turns * file.pitch_m;
+        }
+        for side in 0..2 {
+            built.turn_rad[side] = file.turn_rad[0] + file.turn_rad[1 + side];
+            built.offset_m[side] = file.offset_m[0] + file.offset_m[1 + side];
+        }
+        let springs = self.each.iter().any(|k| matches!(k, Knob::ForRate | Knob::ForRestLength));
+        if springs {
+            let law = SpringLaw::Linear { rate_n_per_m: file.for_rate, rest_m: file.for_rest_m };
+            design.purpose.springs = Bank::new(vec![Spring { law, stretch_m: 0.0, mass_kg: 0.0 }], built.extension);
+            if file.starts_at_rest {
+                design.purpose.start_length_m = file.for_rest_m;
+            }
+        }
+    }
+
+    fn turn(&self, knob: Knob, x: f64, design: &mut Design, file: &mut FromFile) {
+        let (built, purpose) = (&mut design.built, &mut design.purpose);
+        match knob {
+            Knob::Brace { left } => {
+                built.brace_m[0] = x;
+                if left {
+                    built.brace_m[1] = x;
+                }
+                if self.cuts {
+                    purpose.sides[0].brace_m = x;
+                    purpose.sides[1].brace_m = built.brace_m[1];
+                }
+            }
+            Knob::LeftBrace => {
+                built.brace_m[1] = x;
+                if self.cuts {
+                    purpose.sides[1].brace_m = x;
+                }
+            }
+            Knob::RollerDiameter => {
+                built.roller_m = 0.5 * x;
+                if self.cuts {
+                    design.cut_roller_m = 0.5 * x;
+                }
+            }
+            Knob::RollingArm => built.arm_m = x,
+            Knob::RollingFriction => built.arm_m = x * built.roller_m,
+            Knob::Rate(index) => set_rate(built.springs.get_mut(index), x),
+            Knob::RateOfAll => built.springs.iter_mut().for_each(|s| set_rate(Some(s), x)),
+            Knob::RestLength => {
+                for spring in &mut built.springs {
+                    if let SpringLaw::Linear { rest_m, .. } = &mut spring.law {
+                        *rest_m = x;
+                    }
+                }
+            }
+            Knob::Turns => file.turns = x,
+            Knob::Pitch => file.pitch_m = x,
+            Knob::SpringMass => built.springs.iter_mut().for_each(|s| s.mass_kg = x),
+            Knob::SliderMass => built.bodies.slider_kg = x,
+            Knob::BraceMass => built.bodies.brace_kg = x,
+            Knob::BraceInertia => built.bodies.brace_kg_m2 = x,
+            Knob::RollerMass => built.bodies.roller_kg = x,
+            Knob::RollerInertia => built.bodies.roller_kg_m2 = x,
+            Knob::Gravity => built.gravity_m_per_s2 = x,
+            Knob::Tilt => built.tilt_rad = x,
+            Knob::Turn([right, left]) => file.turn_rad[which(right, left)] = x,
+            Knob::Offset([right, left]) => file.offset_m[which(right, left)] = x,
+            Knob::Height => built.height_m = x,
+            Knob::ForForce => purpose.law = crate::law::ForceLaw::constant(x),
+            Knob::ForRate => file.for_rate = x,
+            Knob::ForRestLength => file.for_rest_m = x,
+            Knob::ForStartLength => purpose.start_length_m = x,
+            Knob::ForFriction => purpose.friction = if file.down { -x } else { x },
+            Knob::Share => {
+                purpose.sides[0].share = x;
+                purpose.sides[1].share = 1.0 - x;
+            }
+        }
+    }
+}
+
+/// Both, right, left.
+fn which(right: bool, left: bool) -> usize {
+    match (right, left) {
+        (true, true) => 0,
+        (true, false) => 1,
+        _ => 2,
+    }
+}
+
+fn set_rate(spring: Option<&mut Spring>, rate: f64) {
+    if let Some(Spring { law: SpringLaw::Linear { rate_n_per_m, .. }, .. }) = spring {
+        *rate_n_per_m = rate;
+    }
+}
+
+impl FromFile {
+    fn of(spec: &Spec) -> Self {
+        use crate::design::si;
+        let (springs, errors, profile) = (&spec.design.springs, &spec.errors, &spec.design.profile);
+        let or0 = |slot| si(slot).unwrap_or(0.0);
+        Self {
+            turns: or0(&springs.adjust.turns),
+            pitch_m: or0(&springs.adjust.pitch),
+            turn_rad: [or0(&errors.profile_rotation), or0(&errors.profile_rotation_right), or0(&errors.profile_rotation_left)],
+            offset_m: [or0(&errors.profile_offset), or0(&errors.profile_offset_right), or0(&errors.profile_offset_left)],
+            for_rate: or0(&profile.for_rate),
+            for_rest_m: or0(&profile.for_rest_length),
+            starts_at_rest: profile.for_start_length.is_none(),
+            down: profile.compensate.as_ref().is_some_and(|c| c.value == "down"),
+            left_brace: spec.design.brace_length_left.is_some(),
+        }
+    }
+}
+
+/// What a path means, or why a study cannot change it.
+fn knob(spec: &Spec, path: &str, cuts: bool) -> Result<Knob, &'static str> {
+    if path.starts_with("design.profile.") && !cuts {
+        return Err("the cam is cut once: what it is cut for does not scatter");
+    }
+    let left_brace = FromFile::of(spec).left_brace;
+    Ok(match path {
+        "design.brace_length" => Knob::Brace { left: !left_brace },
+        "design.brace_length_left" => Knob::LeftBrace,
+        "design.roller_diameter" => Knob::RollerDiameter,
+        "design.rolling_arm" => Knob::RollingArm,
+        "design.rolling_friction" => Knob::RollingFriction,
+        "design.springs.rate" => Knob::RateOfAll,
+        "design.springs.rest_length" => Knob::RestLength,
+        "design.springs.adjust.turns" => Knob::Turns,
+        "design.springs.adjust.pitch" => Knob::Pitch,
+        "design.springs.mass" => Knob::SpringMass,
+        "design.bodies.slider_mass" => Knob::SliderMass,
+        "design.bodies.brace_mass" => Knob::BraceMass,
+        "design.bodies.brace_inertia" => Knob::BraceInertia,
+        "design.bodies.roller_mass" => Knob::RollerMass,
+        "design.bodies.roller_inertia" => Knob::RollerInertia,
+        "environment.gravity" => Knob::Gravity,
+        "errors.tilt" => Knob::Tilt,
+        "errors.profile_rotation" => Knob::Turn([true, true]),
+        "errors.profile_rotation_right" => Knob::Turn([true, false]),
+        "errors.profile_rotation_left" => Knob::Turn([false, true]),
+        "errors.profile_offset" => Knob::Offset([true, true]),
+        "errors.profile_offset_right" => Knob::Offset([true, false]),
+        "errors.profile_offset_left" => Knob::Offset([false, true]),
+        "errors.profile_height" => Knob::Height,
+        "design.profile.for_force" => Knob::ForForce,
+        "design.profile.for_rate" => Knob::ForRate,
+        "design.profile.for_rest_length" => Knob::ForRestLength,
+        "design.profile.for_start_length" => Knob::ForStartLength,
+        "design.profile.for_friction" => Knob::ForFriction,
+        "design.profile.share_right" => Knob::Share,
+        _ => match path.strip_prefix("design.springs.rates.").and_then(|n| n.parse::<usize>().ok()) {
+            Some(place @ 1..) => Knob::Rate(place - 1),
+            _ => return Err("it does not change the force"),
+        },
+    })
+}

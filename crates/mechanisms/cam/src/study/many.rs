@@ -1,0 +1,231 @@
+//! A design for studies that look at many: forces both ways over the window, and what follows from the whole stroke.
+
+use std::sync::Arc;
+
+use forcewright_base::units::Dimension;
+use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
+
+use super::knobs::Knobs;
+use crate::analysis::{Behaviour, measure_scalars};
+use crate::cut::Cut;
+use crate::design::Design;
+use crate::law::ForceLaw;
+use crate::metrics::METRICS;
+
+/// Panels of the window, each with a station in its middle.
+const PANELS: usize = 40;
+/// Stations over the window.
+pub(super) const STATIONS: usize = 2 * PANELS + 1;
+
+/// Metrics that follow from the forces over the window.
+const OF_FORCES: [&str; 13] = [
+    "force_deviation",
+    "force_mean",
+    "force_up_mean",
+    "force_up_sd",
+    "force_up_max",
+    "force_up_min",
+    "force_down_mean",
+    "force_down_sd",
+    "force_down_max",
+    "force_down_min",
+    "loop_area",
+    "hysteresis",
+    "force_spread",
+];
+
+/// Metrics that are values of their own, after the forces.
+pub(super) const SCALARS: [&str; 14] = [
+    "path_curvature_radius_min",
+    "undercut_travel",
+    "pressure_angle_max",
+    "spring_length_max",
+    "spring_length_min",
+    "contact_force_max",
+    "contact_force_min",
+    "friction_needed_max",
+    "guide_force_max",
+    "cam_length",
+    "peak_force_ratio",
+    "force_min_motion",
+    "contact_force_min_motion",
+    "moving_mass",
+];
+
+/// See the module.
+pub(super) struct Many {
+    knobs: Knobs,
+    base: Design,
+    /// The cam, where it is the same for all.
+    cut: Option<Arc<Cut>>,
+    window_m: [f64; 2],
+    wanted: Option<ForceLaw>,
+    outputs: Vec<Output>,
+    measures: Vec<Measure>,
+}
+
+struct Room {
+    design: Design,
+}
+
+impl Many {
+    pub(super) fn new(design: &Design, knobs: Knobs) -> Self {
+        let cut = if knobs.cuts() { None } else { design.cut().ok() };
+        let nominal = Behaviour::of(design).ok();
+        let window_m = nominal.map_or([0.0, design.purpose.stroke_m], |b| b.window_m);
+        let force = |name: &str, index: usize| Output { name: name.to_owned(), unit: "N", values: index * STATIONS..(index + 1) * STATIONS };
+        let mut outputs = vec![force("force_up", 0), force("force_down", 1), force("force", 2)];
+        for (index, name) in SCALARS.iter().enumerate() {
+            let unit = METRICS.iter().find(|m| m.name == *name).map_or("1", |m| m.dimension.si_symbol());
+            outputs.push(Output { name: (*name).to_owned(), unit, values: 3 * STATIONS + index..3 * STATIONS + index + 1 });
+        }
+        let wanted = design.requirements.as_ref().and_then(|r| r.force.as_ref()).map(|(law, _)| law.clone());
+        Self { cut, window_m, wanted, outputs, measures: measures(design), base: design.clone(), knobs }
+    }
+
+    /// Travels at which forces are computed, m.
+    pub(super) fn stations_m(&self) -> impl Iterator<Item = f64> + '_ {
+        let [from, to] = self.window_m;
+        (0..STATIONS).map(move |i| from + (to - from) * i as f64 / (STATIONS - 1) as f64)
+    }
+
+    /// Force that is required at each station; the level of the cut where none is.
+    pub(super) fn wanted_n(&self) -> Vec<f64> {
+        let law = self.wanted.as_ref().unwrap_or(&self.base.purpose.law);
+        self.stations_m().map(|s| law.force_n(s)[0]).collect()
+    }
+
+    fn of_forces(&self, values: &[f64]) -> [f64; OF_FORCES.len()] {
+        let [up, down, still] = [0, 1, 2].map(|i| &values[i * STATIONS..(i + 1) * STATIONS]);
+        let weight = |i: usize| if i == 0 || i == STATIONS - 1 { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+        let total = 3.0 * (STATIONS - 1) as f64;
+        let mean = |v: &[f64]| v.iter().enumerate().map(|(i, v)| weight(i) * v).sum::<f64>() / total;
+        let spread = |v: &[f64], mean: f64| {
+            let sum: f64 = v.iter().enumerate().map(|(i, v)| weight(i) * (v - mean) * (v - mean)).sum();
+            (sum / total).max(0.0).sqrt()
+        };
+        let extent = |v: &[f64]| v.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
+        let (mean_up, mean_down, mean_still) = (mean(up), mean(down), mean(still));
+        let ([up_min, up_max], [down_min, down_max]) = (extent(up), extent(down));
+        let wanted = self.wanted_n();
+        let off = |v: &[f64]| v.iter().zip(&wanted).map(|(v, w)| (v / w - 1.0).abs()).fold(0.0, f64::max);
+        let deviation = if self.wanted.is_some() { off(up).max(off(down)) } else { f64::NAN };
+        let [from, to] = self.window_m;
+        let (high, low) = (up_max.max(down_max), up_min.min(down_min));
+        [
+            deviation,
+            mean_still,
+            mean_up,
+            spread(up, mean_up),
+            up_max,
+            up_min,
+            mean_down,
+            spread(down, mean_down),
+            down_max,
+            down_min,
+            (mean_up - mean_down) * (to - from),
+            (mean_up - mean_down) / mean_still,
+            (high - low) / (high + low),
+        ]
+    }
+}
+
+fn measures(design: &Design) -> Vec<Measure> {
+    let requirements = design.requirements.as_ref();
+    let one = |name: &str| {
+        let (mut lower, mut upper, mut requirement) = (f64::NEG_INFINITY, f64::INFINITY, "");
+        match name {
+            "force_deviation" => {
+                if let Some((_, band)) = requirements.and_then(|r| r.force.as_ref()) {
+                    (upper, requirement) = (*band, "force");
+                }
+            }
+            "hysteresis" => {
+                if let Some(limit) = requirements.and_then(|r| r.hysteresis) {
+                    (upper, requirement) = (limit, "hysteresis");
+                }
+            }
+            "spring_length_max" => {
+                if let Some(max) = design.built.max_length_m {
+                    (upper, requirement) = (max, "spring_length");
+                }
+            }
+            "spring_length_min" => {
+                if let Some(min) = design.built.min_length_m {
+                    (lower, requirement) = (min, "spring_solid");
+                }
+            }
+            "contact_force_min" => (lower, requirement) = (0.0, "contact"),
+            "contact_force_min_motion" if design.motion.is_some() => (lower, requirement) = (0.0, "contact_motion"),
+            _ => {}
+        }
+        for limit in requirements.iter().flat_map(|r| &r.limits).filter(|l| METRICS[l.metric].name == name) {
+            lower = lower.max(limit.min.unwrap_or(lower));
+            upper = upper.min(limit.max.unwrap_or(upper));
+            requirement = METRICS[limit.metric].name;
+        }
+        let unit = METRICS.iter().find(|m| m.name == name).map_or(Dimension::Ratio, |m| m.dimension).si_symbol();
+        Measure { name: name.to_owned(), requirement: requirement.to_owned(), unit, lower, upper }
+    };
+    OF_FORCES.iter().chain(&SCALARS).map(|name| one(name)).collect()
+}
+
+impl Evaluator for Many {
+    fn variables(&self) -> &[Variable] {
+        &self.knobs.variables
+    }
+
+    fn outputs(&self) -> &[Output] {
+        &self.outputs
+    }
+
+    fn stations(&self, output: usize) -> Vec<f64> {
+        if output < 3 { self.stations_m().collect() } else { Vec::new() }
+    }
+
+    fn measures(&self) -> &[Measure] {
+        &self.measures
+    }
+
+    fn workspace(&self) -> Workspace {
+        Workspace::new(Room { design: self.base.clone() })
+    }
+
+    fn evaluate(&self, x: &[f64], derivatives: bool, out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure> {
+        let failure = |reason: String| Failure { reason };
+        let room = workspace.get::<Room>().ok_or_else(|| failure("the room is another evaluator's".to_owned()))?;
+        room.design.clone_from(&self.base);
+        self.knobs.apply(x, &mut room.design);
+        let cut = match &self.cut {
+            Some(cut) => Arc::clone(cut),
+            None => room.design.cut().map_err(|e| failure(format!("the cam cannot be cut: {e:?}")))?,
+        };
+        let behaviour = Behaviour::sampled(&room.design, cut, self.window_m, 2 * PANELS, 2 * PANELS);
+        if behaviour.stopped.is_some() || room.design.motion.is_some() != behaviour.motion.is_some() {
+            return Err(failure("a brace misses the path of its roller".to_owned()));
+        }
+        out.values.clear();
+        let window = &behaviour.window;
+        out.values.extend(window.iter().map(|s| s.up.force_n));
+        out.values.extend(window.iter().map(|s| s.down.force_n));
+        out.values.extend(window.iter().map(|s| s.still.force_n));
+        let scalars = measure_scalars(&room.design, &behaviour);
+        out.values.extend(SCALARS.iter().map(|name| scalars.get(name).unwrap_or(0.0)));
+        out.jacobian.clear();
+        if derivatives {
+            let steps: Vec<f64> = self.knobs.variables.iter().map(|v| 1e-5 * v.nominal.abs().max(1e-3 * v.scale().min(1.0))).collect();
+            forcewright_study::differences::jacobian_with_steps(self, x, &steps, out, workspace)?;
+        }
+        Ok(())
+    }
+
+    fn measure(&self, _: &[f64], values: &[f64], out: &mut Vec<f64>, _: &mut Workspace) {
+        out.clear();
+        if values.len() != 3 * STATIONS + SCALARS.len() {
+            out.resize(self.measures.len(), f64::NAN);
+            return;
+        }
+        out.extend(self.of_forces(values));
+        out.extend(&values[3 * STATIONS..]);
+    }
+}
