@@ -102,7 +102,7 @@ impl Behaviour {
     }
 }
 
-/// Forces at even travels; stops where a brace no longer reaches its path.
+/// Forces at even travels; stops where a brace no longer reaches its path. A scan from the very start begins where the slider comes to rest.
 fn scan(
     mechanism: &Mechanism,
     [from, to]: [f64; 2],
@@ -120,6 +120,8 @@ fn scan(
                 *evaluations += u64::from(station.pose.evaluations);
                 stations.push(station);
             }
+            // Springs, errors or the corner of an undercut may keep the slider above the start of its travel.
+            Err(_) if from == 0.0 && stations.is_empty() && i < intervals / 10 => {}
             Err(why) => return (stations, Some((s, why))),
         }
     }
@@ -202,9 +204,20 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
         return m;
     }
     forces(design, behaviour, &mut m);
+    extents(behaviour, &mut m);
     contact(behaviour, &mut m);
     moving(behaviour, &mut m);
     m
+}
+
+/// Width and height over the stroke.
+fn extents(behaviour: &Behaviour, m: &mut Measured) {
+    let r = behaviour.mechanism.roller_m;
+    let out = Behaviour::extent(&behaviour.stations, |s| s.pose.places[0].at[0] + s.pose.places[1].at[0])[1];
+    m.set("width", out + 2.0 * r);
+    let low = Behaviour::extent(&behaviour.stations, |s| s.pose.places[0].at[1].min(s.pose.places[1].at[1]))[0];
+    let high = Behaviour::extent(&behaviour.stations, |s| s.pose.joints[0][1].max(s.pose.places[0].at[1]))[1];
+    m.set("height", high - low + 2.0 * r);
 }
 
 /// Those that studies of many designs take as they are: all but what follows from the forces over the window.
@@ -212,6 +225,7 @@ pub(crate) fn measure_scalars(design: &Design, behaviour: &Behaviour) -> Measure
     let mut m = Measured { values: vec![None; METRICS.len()] };
     geometry(design, behaviour, &mut m);
     mass(design, &mut m);
+    extents(behaviour, &mut m);
     contact(behaviour, &mut m);
     moving(behaviour, &mut m);
     m

@@ -123,7 +123,8 @@ impl Context<'_> {
     /// CAM002: the stroke without undercut.
     fn stroke(&self, requirements: &Requirements) -> Option<Check> {
         let wanted = requirements.stroke_m?;
-        let reached = self.behaviour.stopped.map_or(self.design.purpose.stroke_m, |(s, _)| s);
+        let start = self.behaviour.stations.first().map_or(0.0, |s| s.travel_m);
+        let reached = self.behaviour.stopped.map_or(self.design.purpose.stroke_m, |(s, _)| s) - start;
         let base = self.base("CAM002", "stroke", "Stroke", "undercut_travel");
         let comparison = Comparison {
             value: Some(reached),

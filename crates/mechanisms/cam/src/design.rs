@@ -15,6 +15,7 @@ use crate::cut::{Cut, CutError, CutSide, Purpose, SIDES};
 use crate::law::ForceLaw;
 use crate::mechanism::{Bodies, Mechanism, SpringMass};
 use crate::motion::{Law, Motion};
+use crate::parts::Making;
 use crate::path::{Flaws, SidePath};
 use crate::spec::{self, Spec};
 use crate::springs::{Bank, Spring};
@@ -32,6 +33,8 @@ pub struct Design {
     pub built: Built,
     /// How the slider moves, where that is asked for.
     pub motion: Option<Motion>,
+    /// How the parts are made.
+    pub making: Making,
     /// Whether the slider is free to move sideways.
     pub free_guide: bool,
     /// Materials of cam and roller.
@@ -202,6 +205,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         cut_roller_m: roller_m,
         built,
         motion,
+        making: making_of(spec, roller_m)?,
         free_guide: spec.motion.guide.as_ref().is_some_and(|g| g.value == "free"),
         materials,
         friction: si(&spec.design.friction),
@@ -245,6 +249,20 @@ fn built_of(spec: &Spec, springs: Vec<Spring>, extension: bool, (roller_m, arm_m
         ],
         offset_m: [sum(&errors.profile_offset, &errors.profile_offset_right), sum(&errors.profile_offset, &errors.profile_offset_left)],
         height_m: mass(&errors.profile_height),
+    })
+}
+
+fn making_of(spec: &Spec, roller_m: f64) -> Option<Making> {
+    let parts = &spec.parts;
+    let pin_m = si(&parts.pin_diameter).unwrap_or(0.5 * roller_m);
+    Some(Making {
+        chord_error_m: si(&parts.chord_error)?,
+        base_m: si(&parts.base).unwrap_or(2.0 * roller_m),
+        wall_m: si(&parts.wall).unwrap_or(2.0 * roller_m),
+        pin_m,
+        brace_width_m: si(&parts.brace_width).unwrap_or(2.5 * pin_m),
+        brace_thickness_m: si(&parts.brace_thickness).unwrap_or(0.5 * pin_m),
+        hole_m: si(&parts.hole),
     })
 }
 

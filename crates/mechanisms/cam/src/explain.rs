@@ -41,6 +41,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "friction needed for rolling",
         "Tangential over normal force between roller and cam, the largest over stroke and directions. More than the friction that is there (`design.friction`), and the rollers slide instead of rolling.",
     ),
+    code(
+        "CAM011",
+        "force error of the arcs",
+        "A cam is cut along arcs that share their tangents, within `parts.chord_error` of the exact profile. The force follows the slope of the deviation: δF = d(P δL)/ds, with P the force of the springs and δL the lengthening of the springs by it. The check compares the largest |δF|/F with a tenth of the force band.",
+    ),
     code("CAM012", "limit on a metric", "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have is *not assessed*, which does not count as met."),
     code(
         "E0601",
@@ -62,6 +67,9 @@ pub(crate) const CODES: &[Explanation] = &[
     code("E0606", "the window does not lie in the stroke", "`requirements.window` is a smaller and a larger travel within `design.stroke`."),
     code("E0607", "the rollers run into each other", "With compression springs the rollers come closer over the stroke. Their centres must stay a roller's radius away from the axis."),
     code("E0608", "a spring's curve is not one", "A curve of a spring is at least two pairs of length and force, the lengths rising."),
+    code("E0609", "the cam cannot be drawn", "The profile could not be fitted with arcs within `parts.chord_error`, or the cam cannot be cut at all."),
+    code("E0630", "a synthesis needs more", "A synthesis of a cam mechanism needs the force (`requirements.force` with its band, or a profile) and the stroke (`requirements.stroke`). What it may use stands in `[synthesise]`: the room, the springs of a catalogue, rollers, the rolling resistance."),
+    code("E0631", "a row of the springs' file is no spring", "Each row of `synthesise.springs_file` is an extension spring: rate, rest length, largest length above it, and mass."),
     code("W0601", "the window holds the undercut", "Below the undercut travel the roller turns about a corner, and the force is not the one that was wanted. Begin the window beyond it, or remove the undercut (CAM003)."),
     code("W0602", "springs are slack", "Springs shorter than their rest length (extension) or longer (compression) are computed with their straight line continued; real ones have no force there."),
     code("W0603", "the slider needs its guide", "The force across the travel grows with the distance from the axis in the direction of that distance: a slider without a guide leaves the axis. Guides carry `guide_force_max`."),

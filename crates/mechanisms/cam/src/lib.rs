@@ -23,10 +23,12 @@ mod spec;
 mod springs;
 mod statements;
 mod study;
+mod synthesis;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism as Family, Progress, Reproduction};
 use forcewright_contract::studies::{Free, Purpose as StudyPurpose, Studies};
+use forcewright_contract::synthesis::{Skeleton, Synthesiser};
 use forcewright_model::{Counter, Metric, NoPart, Outcome, PartSet, Status, StatusKind};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -39,6 +41,7 @@ pub use law::{ForceLaw, LawError};
 pub use mechanism::{Bodies, Drive, Instant, Mechanism, NotAssembled, Pose, Sense, SideForces, SpringMass};
 pub use metrics::METRICS;
 pub use motion::{Law, Moment, Motion};
+pub use parts::Making;
 pub use path::{Corner, Flaws, MeasuredPath, NormalError, Place, SidePath, Vector, curvature_per_m, frame};
 pub use spec::Spec;
 pub use springs::{Bank, Spring, SpringLaw};
@@ -98,6 +101,14 @@ impl Family for Cam {
 
     fn task(spec: &Spec, design: &Design, free: &[Free], purpose: StudyPurpose, diagnostics: &mut Diagnostics) -> Option<Task> {
         study::task(spec, design, free, purpose, diagnostics)
+    }
+
+    fn skeleton() -> Option<Skeleton> {
+        Some(synthesis::SKELETON)
+    }
+
+    fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
+        synthesis::synthesiser(spec, design, diagnostics)
     }
 
     fn explanations() -> &'static [Explanation] {

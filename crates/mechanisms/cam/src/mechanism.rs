@@ -90,6 +90,8 @@ impl Drive {
 /// Where everything is.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
+    /// Travel s of the slider, m.
+    pub travel_m: f64,
     /// λ of each side, m.
     pub lambda_m: [f64; SIDES],
     /// The paths' points.
@@ -198,7 +200,7 @@ impl Mechanism {
         let mut evaluations = 0;
         let right = self.side_pose(0, joints[0], at[0], near, &mut evaluations)?;
         let left = if self.symmetric([at[1], 0.0, 0.0]) { right } else { self.side_pose(1, joints[1], at[0], near, &mut evaluations)? };
-        Ok(Pose { lambda_m: [right.0, left.0], places: [right.1, left.1], joints, evaluations })
+        Ok(Pose { travel_m: at[0], lambda_m: [right.0, left.0], places: [right.1, left.1], joints, evaluations })
     }
 
     fn side_pose(
@@ -211,17 +213,9 @@ impl Mechanism {
     ) -> Result<(f64, Place), NotAssembled> {
         let length = self.brace_m[side];
         let path = &self.paths[side];
-        let mut lambda = match near {
-            Some(pose) => {
-                // Along the tangent of the motion.
-                let (p, from) = (&pose.places[side], pose.joints[side]);
-                let arm = sum(&[(1.0, p.at), (-1.0, from)]);
-                let moved = sum(&[(1.0, joint), (-1.0, from)]);
-                let change = dot(arm, moved) / dot(arm, p.slope);
-                pose.lambda_m[side] + if change.is_finite() { change } else { 0.0 }
-            }
-            None => path.cut().expected_m(travel_m),
-        };
+        let expected = path.cut().expected_m(travel_m);
+        // As far from where it was meant to be as it was at the position nearby.
+        let mut lambda = near.map_or(expected, |pose| expected + pose.lambda_m[side] - path.cut().expected_m(pose.travel_m));
         let scale = path.cut().purpose().start_length_m;
         let mut gap = f64::INFINITY;
         let mut place = path.at(lambda);

@@ -63,6 +63,8 @@ pub const METRICS: &[MetricInfo] = &[
         "Smallest restoring force per sideways motion of a slider without a guide, over the window; below zero it turns away.",
     ),
     metric("moving_mass", Dimension::Mass, false, "Mass of slider, braces, rollers and springs."),
+    metric("width", Dimension::Length, true, "Largest width over the stroke, rollers included."),
+    metric("height", Dimension::Length, true, "From the lowest roller to the highest one or the slider's joint, over the stroke, a roller's radius more at the top."),
     metric("cam_length", Dimension::Length, false, "Extent of the cam along the travel, without its base."),
     metric("peak_force_ratio", Dimension::Ratio, true, "Largest force in the motion over the quasi-static one at the same place, minus one."),
     metric(

@@ -8,6 +8,7 @@ use forcewright_contract::metrics::Limits;
 use forcewright_contract::studies::Studies;
 
 use crate::metrics::CamMetrics;
+use crate::synthesis::Synthesise;
 
 /// Everything that a project file can say.
 #[derive(Debug, Default)]
@@ -22,12 +23,16 @@ pub struct Spec {
     pub(crate) environment: Section<Environment>,
     /// `[design]`
     pub(crate) design: Section<Design>,
+    /// `[parts]`
+    pub(crate) parts: Section<Parts>,
     /// `[errors]`
     pub(crate) errors: Section<Errors>,
     /// `[motion]`
     pub(crate) motion: Section<Motion>,
     /// `[model]`
     pub(crate) model: Section<Model>,
+    /// `[synthesise]`
+    pub(crate) synthesise: Section<Synthesise>,
     /// `[optimise]` and `[tolerance]`
     pub(crate) studies: Studies,
 }
@@ -137,6 +142,18 @@ pub(crate) struct Bodies {
     pub roller_inertia: Slot<Quantity>,
 }
 
+/// How the parts are made.
+#[derive(Debug, Default)]
+pub(crate) struct Parts {
+    pub chord_error: Slot<Quantity>,
+    pub base: Slot<Quantity>,
+    pub wall: Slot<Quantity>,
+    pub pin_diameter: Slot<Quantity>,
+    pub brace_width: Slot<Quantity>,
+    pub brace_thickness: Slot<Quantity>,
+    pub hole: Slot<Quantity>,
+}
+
 /// Errors of making and assembly.
 #[derive(Debug, Default)]
 pub(crate) struct Errors {
@@ -214,9 +231,11 @@ impl Describe for Spec {
         self.material.describe(v, &Param::new("material", "What cam and rollers are made of: for the pressure between them."));
         self.environment.describe(v, &Param::new("environment", "Where it works."));
         self.design.describe(v, &Param::new("design", "The mechanism.").required());
+        self.parts.describe(v, &Param::new("parts", "The plates that are cut. Without influence on the force."));
         self.errors.describe(v, &Param::new("errors", "Errors of making and assembly."));
         self.motion.describe(v, &Param::new("motion", "What happens to it: how the slider is guided and moved."));
         self.model.describe(v, &Param::new("model", "Which equations are solved."));
+        self.synthesise.describe(v, &Param::new("synthesise", "What `forcewright synthesise` may use: room, springs, rollers."));
         self.studies.describe(v);
         v.reserved(RESERVED_SECTIONS);
     }
@@ -375,6 +394,20 @@ impl Describe for Bodies {
         v.quantity(&inertia("brace_inertia", "Each brace about its middle."), &mut self.brace_inertia);
         v.quantity(&mass("roller_mass", "Each roller with its axle, without springs."), &mut self.roller_mass);
         v.quantity(&inertia("roller_inertia", "What rolls of each roller, about its axis."), &mut self.roller_inertia);
+    }
+}
+
+impl Describe for Parts {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let size = |key, doc| length(key, doc).above(0.0, 1.0);
+        let error = "Largest distance between the arcs that the cam is drawn with and its exact profile.";
+        v.quantity(&length("chord_error", error).within(1e-8, 1e-3).default("0.1 µm"), &mut self.chord_error);
+        v.quantity(&size("base", "Height of the cam plate below the start of its profile; by default a roller diameter."), &mut self.base);
+        v.quantity(&size("wall", "With compression springs: material behind the profile; by default a roller diameter."), &mut self.wall);
+        v.quantity(&size("pin_diameter", "Diameter of the axles and of the holes for them; by default a quarter of that of the rollers."), &mut self.pin_diameter);
+        v.quantity(&size("brace_width", "Width of the braces; by default 2.5 axles."), &mut self.brace_width);
+        v.quantity(&size("brace_thickness", "Thickness of the braces; by default half an axle."), &mut self.brace_thickness);
+        v.quantity(&size("hole", "Diameter of two mounting holes on the axis of the cam plate; without it there are none."), &mut self.hole);
     }
 }
 

@@ -35,7 +35,9 @@ const OF_FORCES: [&str; 13] = [
 ];
 
 /// Metrics that are values of their own, after the forces.
-pub(super) const SCALARS: [&str; 14] = [
+pub(super) const SCALARS: [&str; 16] = [
+    "width",
+    "height",
     "path_curvature_radius_min",
     "undercut_travel",
     "pressure_angle_max",

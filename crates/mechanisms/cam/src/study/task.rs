@@ -18,6 +18,8 @@ const OBJECTIVES: &[(&str, &str)] = &[
     ("force_spread", "half width of the band that the force needs, up and down, its level free"),
     ("hysteresis", "mean up − mean down over the mean"),
     ("spring_length_max", "largest length of the springs"),
+    ("width", "largest width over the stroke"),
+    ("height", "height over the stroke"),
     ("cam_length", "extent of the cam along the travel"),
     ("contact_force_max", "largest force between roller and cam"),
     ("pressure_angle_max", "largest pressure angle"),

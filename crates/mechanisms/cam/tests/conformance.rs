@@ -1,0 +1,6 @@
+//! The questions that every family is asked.
+
+#[test]
+fn conformance() {
+    forcewright_contract::conformance::suite::<forcewright_cam::Cam>(include_str!("../../../../examples/cam/no-undercut.toml"));
+}
