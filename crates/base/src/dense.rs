@@ -137,7 +137,22 @@ impl Lu {
     /// # Panics
     /// If the length is not [`Lu::size`].
     pub fn solve(&mut self, rhs: &mut [f64]) {
-        self.solve_columns(rhs, 1);
+        let n = self.n;
+        assert_eq!(rhs.len(), n, "right-hand side of the wrong length");
+        self.scratch.resize(n, 0.0);
+        // The operations of `solve_columns` in the same order, with the sum of a row kept at hand.
+        for (row, &source) in self.order.iter().enumerate() {
+            let (done, rest) = self.scratch.split_at_mut(row);
+            let factors = &self.factors[row * n..row * n + row];
+            rest[0] = factors.iter().zip(&*done).fold(rhs[source], |sum, (factor, value)| sum - factor * value);
+        }
+        for row in (0..n).rev() {
+            let (head, done) = self.scratch.split_at_mut(row + 1);
+            let factors = &self.factors[row * n + row..(row + 1) * n];
+            let sum = factors[1..].iter().zip(&*done).fold(head[row], |sum, (factor, value)| sum - factor * value);
+            head[row] = sum * (1.0 / factors[0]);
+        }
+        rhs.copy_from_slice(&self.scratch[..n]);
     }
 
     /// Replaces `columns` right-hand sides, stored row by row (`size × columns`), by their solutions.
@@ -174,6 +189,35 @@ impl Lu {
             }
         }
         rhs.copy_from_slice(x);
+    }
+
+    /// Replaces the right-hand side by the solution of the transposed system, `Aᵀ·x = b`.
+    ///
+    /// # Panics
+    /// If the length is not [`Lu::size`].
+    pub fn solve_transposed(&mut self, rhs: &mut [f64]) {
+        let n = self.n;
+        assert_eq!(rhs.len(), n, "right-hand side of the wrong length");
+        // Aᵀ = Uᵀ Lᵀ P: rows of the factors are columns of their transposes.
+        for row in 0..n {
+            let (head, rest) = rhs.split_at_mut(row + 1);
+            let factors = &self.factors[row * n..(row + 1) * n];
+            head[row] /= factors[row];
+            for (target, factor) in rest.iter_mut().zip(&factors[row + 1..]) {
+                *target -= factor * head[row];
+            }
+        }
+        for row in (1..n).rev() {
+            let (head, rest) = rhs.split_at_mut(row);
+            for (target, factor) in head.iter_mut().zip(&self.factors[row * n..row * n + row]) {
+                *target -= factor * rest[0];
+            }
+        }
+        self.scratch.resize(n, 0.0);
+        for (value, &place) in rhs.iter().zip(&self.order) {
+            self.scratch[place] = *value;
+        }
+        rhs.copy_from_slice(&self.scratch[..n]);
     }
 
     /// After [`Singular`] at `column`: a vector that the matrix maps to (nearly) zero, with 1 in that column and 0 after it.
@@ -219,6 +263,30 @@ mod tests {
         lu.solve_columns(&mut rhs, 2);
         assert!(rhs.iter().zip([2.0, 1.0, 1.0, 2.0]).all(|(a, b)| (a - b).abs() < 1e-15), "{rhs:?}");
         assert_eq!(lu.size(), 2);
+    }
+
+    #[test]
+    fn one_column_has_the_bits_of_several() {
+        let n = 9;
+        let a: Vec<f64> = (0..n * n).map(|k| crate::maths::sin(1.3 * k as f64 + 0.1 * (k * k % 7) as f64)).collect();
+        let b: Vec<f64> = (0..n).map(|k| crate::maths::cos(2.1 * k as f64)).collect();
+        let mut lu = Lu::new();
+        lu.factor(n, n, &a).unwrap();
+        let (mut one, mut several) = (b.clone(), b);
+        lu.solve(&mut one);
+        lu.solve_columns(&mut several, 1);
+        assert_eq!(one, several);
+    }
+
+    #[test]
+    fn solves_the_transposed_system() {
+        let a = [0.0, 3.0, 1.0, 2.0, 1.0, -1.0, 4.0, 0.5, 6.0];
+        let want = [1.0, -2.0, 0.25];
+        let mut rhs: Vec<f64> = (0..3).map(|column| (0..3).map(|row| a[3 * row + column] * want[row]).sum()).collect();
+        let mut lu = Lu::new();
+        lu.factor(3, 3, &a).unwrap();
+        lu.solve_transposed(&mut rhs);
+        assert!(rhs.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-15), "{rhs:?}");
     }
 
     #[test]

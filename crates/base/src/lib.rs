@@ -5,6 +5,7 @@ pub mod diagnostics;
 pub mod fits;
 pub mod inertia;
 pub mod maths;
+pub mod orthogonal;
 pub mod quadrature;
 pub mod roots;
 pub mod text;
