@@ -156,6 +156,8 @@ fn optimise() -> Command {
 const EXPORT_HELP: &str = "\
 Formats: dxf (closed polylines with arcs, for cutting), svg (true size), step (solid), stl and 3mf (meshes). Lengths are in millimetres.
 
+FILE-part.html shows the part with its measures and lists the files. With --variant the names say FILE-VARIANT.
+
 The section [parts] of the file says how large pads, holes and fillets are; [process] says what can be made.
 
 Exit codes: 0 written, 1 written but the process cannot make it, 2 error in the file or the call, or a design that is no part in one piece, 4 input/output.";

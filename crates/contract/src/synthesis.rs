@@ -3,7 +3,7 @@
 //! A family knows shapes and how they scale; the library completes the user's file with what a family proposes, analyses it in full, has
 //! it corrected, and ranks what keeps every requirement. Neither needs to know more of the other.
 
-use forcewright_model::Outcome;
+use forcewright_model::{Outcome, ParameterRow};
 
 /// How a file without a design is made one that can be understood.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +71,8 @@ pub trait Synthesiser: Send + Sync {
     fn proposals(&self) -> Vec<Proposal>;
     /// A proposal in the light of its full analysis.
     fn judge(&self, proposal: &Proposal, outcome: &Outcome) -> Judgement;
+    /// A proposal after a search has gone on from it: its sizes are those of the parameters that its file now has.
+    fn searched(&self, proposal: &Proposal, parameters: &[ParameterRow]) -> Proposal;
     /// Whether two designs are so near to each other that one of them is enough.
     fn alike(&self, a: &Proposal, b: &Proposal) -> bool;
     /// For each limit the nearest value at which, all others as they are, something can be proposed; `slack` from 0 on loosens it by so

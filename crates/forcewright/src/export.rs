@@ -1,5 +1,7 @@
 //! Files for making the parts of a design.
 
+mod page;
+
 use forcewright_base::diagnostics::Explanation;
 use forcewright_fabricate::{Format, Options, write};
 use forcewright_model::{CheckState, NoPart, Part, PartSet};
@@ -29,7 +31,7 @@ pub struct Exported {
 }
 
 impl Loaded {
-    /// The parts of the design, each in every format, as files that begin with `stem`.
+    /// The parts of the design, each once in every format, as files that begin with `stem`.
     ///
     /// # Errors
     /// [`NoPart`] where the design cannot be made as it is drawn, or its outline cannot be written.
@@ -38,7 +40,12 @@ impl Loaded {
         let mut files = Vec::new();
         for part in &set.parts {
             let name = if set.parts.len() == 1 { stem.to_owned() } else { format!("{stem}-{}", part.name) };
+            let mut named: Vec<Format> = Vec::new();
             for format in formats {
+                if named.contains(format) {
+                    continue;
+                }
+                named.push(*format);
                 let bytes = write(part, *format, options).map_err(|error| NoPart {
                     code: "E0326",
                     message: format!("{} as {format}: {error}", part.name),
@@ -47,6 +54,7 @@ impl Loaded {
                 files.push((format!("{name}.{}", format.extension()), bytes));
             }
         }
+        files.extend(set.sheets.iter().map(|sheet| (format!("{stem}-{}.csv", sheet.name), sheet.csv().into_bytes())));
         let title = set.parts.first().map_or_else(String::new, |p| p.title.clone());
         Ok(Exported { set, files, input_sha256: self.input_sha256.clone(), title, mechanism: self.family.id() })
     }
@@ -73,12 +81,6 @@ impl Exported {
     }
 }
 
-/// Area of a plate in its plane, m².
-pub fn area_m2(part: &Part) -> f64 {
-    let holes = part.holes.iter().map(|h| 0.25 * std::f64::consts::PI * h.diameter_m * h.diameter_m);
-    part.outline.area_m2() + part.cutouts.iter().map(forcewright_curves::Profile::area_m2).sum::<f64>() - holes.sum::<f64>()
-}
-
 fn part(part: &Part) -> Value {
     let bounds = part.outline.bounds();
     let quantity = |value: f64, unit: &str| json!({ "value": value, "unit": unit });
@@ -88,8 +90,11 @@ fn part(part: &Part) -> Value {
         "depth": quantity(part.depth_m, "m"),
         "width": quantity(bounds.max_m[0] - bounds.min_m[0], "m"),
         "height": quantity(bounds.max_m[1] - bounds.min_m[1], "m"),
-        "area": quantity(area_m2(part), "m^2"),
-        "volume": quantity(area_m2(part) * part.depth_m, "m^3"),
+        "area": quantity(part.area_m2(), "m^2"),
+        "cut_length": quantity(part.cut_length_m(), "m"),
+        "mass": part.mass_kg().map(|kg| quantity(kg, "kg")),
+        "fillets": part.fillets.map(|f| json!({ "count": f.count, "radius": f.radius_m.map(|r| quantity(r, "m")) })),
+        "volume": quantity(part.area_m2() * part.depth_m, "m^3"),
         "holes": part.holes.len(),
         "notes": part.notes,
     })

@@ -35,7 +35,7 @@ pub use forcewright_model as model;
 pub use forcewright_report as report;
 pub use forcewright_study as study;
 
-pub use export::{Exported, area_m2};
+pub use export::Exported;
 pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
 pub use front::{Front, FrontPoint, FrontProgress, FrontTask, Origin};
 pub use load::{Loaded, Refused};

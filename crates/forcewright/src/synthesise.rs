@@ -398,7 +398,8 @@ impl Work<'_> {
             let Ok(found) = loaded.optimise_from(&files, &self.task.path, from, &watch) else { continue };
             let (Some(text), Some(report)) = (found.text, found.after) else { continue };
             let sound = !matches!(self.task.synthesiser.judge(&design.proposal, &report.outcome), Judgement::Reject(_));
-            let next = Designed { proposal: design.proposal.clone(), text, file: String::new(), report, searched: true };
+            let proposal = self.task.synthesiser.searched(&design.proposal, &report.parameters);
+            let next = Designed { proposal, text, file: String::new(), report, searched: true };
             if sound && next.met() {
                 designs[*index] = next;
                 return;

@@ -6,7 +6,7 @@ use forcewright::curves::walls::thickness_along;
 use forcewright::curves::{Profile, Segment};
 use forcewright::fabricate::{Format, Options};
 use forcewright::model::{CheckState, NoPart};
-use forcewright::{Choices, Exported, Loaded, area_m2};
+use forcewright::{Choices, Exported, Loaded};
 
 fn loaded(name: &str, set: &[&str]) -> Loaded {
     let example = forcewright::gallery::find(name).expect("in the gallery");
@@ -126,7 +126,7 @@ fn the_drawing_has_the_thickness_that_gives_the_force() {
     // The area of the drawing is that of the part: arcs stand for splines within a micrometre.
     let area: f64 = profiles.iter().map(Profile::area_m2).sum();
     let part = &exported.set.parts[0];
-    assert!((area / area_m2(part) - 1.0).abs() < 1e-4, "{area}");
+    assert!((area / part.area_m2() - 1.0).abs() < 1e-4, "{area}");
     // Beams of 1 mm, two pads of 6 mm × 6 mm, the foot of 5 mm × 6 mm between the halves and the block of 11 mm × 6 mm; the joints of
     // beams, each a few square thicknesses in all, are what is left.
     let length = |axis: &dyn Fn(f64) -> Oriented| {
@@ -195,4 +195,51 @@ fn no_part_says_why() {
     assert!(hinged.message.contains("n1") && hinged.message.contains("bearing"), "{}", hinged.message);
     let hole = why("compliant/lan-table3", &["parts.hole=9 mm", "parts.pad=[\"10 mm\", \"8 mm\"]"]);
     assert!(hole.message.contains("does not fit"), "{}", hole.message);
+}
+
+/// Every example is a part in one piece, but for the one with a hinge, which says so.
+#[test]
+fn every_example_is_a_part_or_says_why_not() {
+    for example in forcewright::gallery::EXAMPLES.iter().filter(|e| e.text.contains("mechanism = \"compliant\"")) {
+        let Ok(loaded) = Loaded::from_text(example.name, example.text, &Choices::default()) else { continue };
+        match loaded.export("part", &[Format::Dxf], &Options::default()) {
+            Ok(exported) => assert_eq!(exported.set.parts.len(), 1, "{}", example.name),
+            Err(none) => assert!(example.name.ends_with("slider-crank") && none.message.contains("hinge"), "{}: {none:?}", example.name),
+        }
+    }
+}
+
+/// Two bars of Williams' toggle meet at the apex: each as long as its axis, with a pad of six thicknesses at its foot. Fillets at the
+/// pads add 2·(1 − π/4)·r² each, about, and the joint at the apex a fraction of a square thickness.
+#[test]
+fn halves_that_meet_on_the_mirror_line_are_one_part() {
+    let exported = export("compliant/williams-toggle", &[], &[Format::Dxf]).expect("a part");
+    let part = &exported.set.parts[0];
+    let inch = 0.0254;
+    let (w, length) = (0.243 * inch, maths::hypot(12.943, 0.386) * inch);
+    let fillets = 2.0 * 2.0 * (1.0 - std::f64::consts::FRAC_PI_4) * 0.25 * w * w;
+    let area = 2.0 * (length * w + 36.0 * w * w) + fillets;
+    assert!((part.area_m2() - area).abs() < 0.1 * w * w, "{} {area}", part.area_m2());
+    assert!((part.size_m()[0] - 2.0 * (12.943 * inch + 6.0 * w)).abs() < 1e-9);
+    assert!(part.notes.iter().any(|n| n.contains("`apex`")), "{:?}", part.notes);
+}
+
+/// Measures and page: what is told is what is in the file, and each format is written once.
+#[test]
+fn the_page_tells_what_is_cut() {
+    let exported = export("compliant/lan-table3", &[], &[Format::Dxf, Format::Svg, Format::Dxf]).expect("a part");
+    let names: Vec<&str> = exported.files.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["part.dxf", "part.svg"]);
+    let part = &exported.set.parts[0];
+    let length: f64 = polylines(&exported.files[0].1).iter().map(Profile::length_m).sum();
+    assert!((part.cut_length_m() / length - 1.0).abs() < 1e-4, "{length}");
+    // POM-C has 1410 kg/m³.
+    assert!((part.mass_kg().expect("a density") / (part.area_m2() * 10e-3 * 1410.0) - 1.0).abs() < 1e-12);
+    let fillets = part.fillets.expect("a cutter of 1 mm");
+    assert!(fillets.radius_m.iter().all(|r| (r - 0.5e-3).abs() < 1e-9), "{fillets:?}");
+    // Names may be broken at their dots.
+    let page = exported.page("lan-table3.toml", None, "forcewright export lan-table3.toml").replace("<wbr />", "");
+    for text in ["part.svg", "<svg", "thinnest wall", "cut length", "75 mm", "mass"] {
+        assert!(page.contains(text), "{text}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Figures of a report: plots and scenes, as data.
 
-use crate::{Axis, Scene};
+use crate::{Axis, PartSet, Scene};
 
 /// How a line is drawn; never colour alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,6 +106,8 @@ pub enum FigureContent {
     Plot(Plot),
     /// A drawing.
     Scene(Scene),
+    /// Plates as they are cut.
+    Part(PartSet),
 }
 
 /// A figure with its words.

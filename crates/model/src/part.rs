@@ -1,5 +1,6 @@
 //! What is made: the only thing that exporters see. Lengths in metres.
 
+use forcewright_base::units::Unit;
 use forcewright_curves::Profile;
 
 use crate::Check;
@@ -13,6 +14,8 @@ pub struct Part {
     pub title: String,
     /// What it is made of; `None` if nothing was said.
     pub material: Option<String>,
+    /// Density of that, kg/m³; `None` if it is not known.
+    pub density_kg_per_m3: Option<f64>,
     /// Its extent out of the plane, m.
     pub depth_m: f64,
     /// The outer boundary, counterclockwise.
@@ -21,15 +24,91 @@ pub struct Part {
     pub cutouts: Vec<Profile>,
     /// Round holes through the plate.
     pub holes: Vec<Hole>,
+    /// Arcs in re-entrant corners; `None` if it has none.
+    pub fillets: Option<Fillets>,
     /// What the maker must know, a sentence each.
     pub notes: Vec<String>,
 }
 
+impl Part {
+    /// Area of the plate in its plane, m².
+    pub fn area_m2(&self) -> f64 {
+        let holes = self.holes.iter().map(|h| 0.25 * std::f64::consts::PI * h.diameter_m * h.diameter_m);
+        self.outline.area_m2() + self.cutouts.iter().map(Profile::area_m2).sum::<f64>() - holes.sum::<f64>()
+    }
+
+    /// Mass of the plate, kg, if its density is known.
+    pub fn mass_kg(&self) -> Option<f64> {
+        Some(self.density_kg_per_m3? * self.area_m2() * self.depth_m)
+    }
+
+    /// Length of all cuts, m: the outline, what is cut out, the holes.
+    pub fn cut_length_m(&self) -> f64 {
+        let holes = self.holes.iter().map(|h| std::f64::consts::PI * h.diameter_m);
+        self.outline.length_m() + self.cutouts.iter().map(Profile::length_m).sum::<f64>() + holes.sum::<f64>()
+    }
+
+    /// Width and height in the plane, m.
+    pub fn size_m(&self) -> [f64; 2] {
+        let bounds = self.outline.bounds();
+        [0, 1].map(|k| bounds.max_m[k] - bounds.min_m[k])
+    }
+}
+
+/// Arcs in the re-entrant corners of a plate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fillets {
+    /// How many.
+    pub count: usize,
+    /// Smallest and largest radius, m.
+    pub radius_m: [f64; 2],
+}
+
+/// A place of a plate to look at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartMark {
+    /// Where, m.
+    pub at_m: [f64; 2],
+    /// What is there: `thinnest wall 0.5 mm`.
+    pub text: String,
+}
+
+/// A table that goes with the parts: places to inspect, springs to order. Numbers carry their units in the heading.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sheet {
+    /// Short name, fit for a file name: `inspection`.
+    pub name: String,
+    /// What it shows.
+    pub caption: String,
+    /// Headings: `x / mm`.
+    pub columns: Vec<String>,
+    /// Rows of cells, as many as headings.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Sheet {
+    /// As a CSV file.
+    pub fn csv(&self) -> String {
+        let line = |cells: &[String]| {
+            let quoted = |c: &String| if c.contains([',', '"', '\n']) { format!("\"{}\"", c.replace('"', "\"\"")) } else { c.clone() };
+            cells.iter().map(quoted).collect::<Vec<_>>().join(",")
+        };
+        let rows = self.rows.iter().map(|row| line(row));
+        std::iter::once(line(&self.columns)).chain(rows).map(|l| l + "\n").collect()
+    }
+}
+
 /// The plates of a mechanism.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct PartSet {
     /// One of each kind.
     pub parts: Vec<Part>,
+    /// Where the wall is thinnest and the gap narrowest.
+    pub marks: Vec<PartMark>,
+    /// Tables that go with them.
+    pub sheets: Vec<Sheet>,
+    /// The unit in which people are shown lengths.
+    pub display: Unit,
     /// Whether the process can make them.
     pub checks: Vec<Check>,
 }

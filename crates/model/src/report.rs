@@ -40,7 +40,7 @@ pub struct Statement {
 pub struct Report {
     /// Result of the analysis: title, status, requirements, metrics, curves, sources, warnings.
     pub outcome: Outcome,
-    /// Name of the family for people: `Compliant constant-force mechanism`.
+    /// Name of the family for people: `Compliant mechanism of flexible beams`.
     pub family: String,
     /// Version of the program.
     pub version: String,

@@ -21,6 +21,10 @@ pub enum Role {
     Construction,
     /// The box in which the mechanism has to stay.
     Envelope,
+    /// A plane of a layout, seen along the load: the drawn one.
+    Plane,
+    /// The same of a copy.
+    PlaneCopy,
 }
 
 /// How a point is held.
@@ -70,6 +74,11 @@ pub enum Item {
         kind: SupportKind,
         /// Unit vector from the mechanism into the ground, for the symbol's orientation.
         outward: [f64; 2],
+    },
+    /// A hinge: beams turn about this point.
+    Hinge {
+        /// Where, m.
+        at: [f64; 2],
     },
     /// An arrow with a text, for forces and motions.
     Arrow {

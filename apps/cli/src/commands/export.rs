@@ -8,9 +8,9 @@ use clap::ArgMatches;
 use forcewright::base::text::visible;
 use forcewright::base::units::format_number;
 use forcewright::fabricate::{Format, Options};
-use forcewright::{DiskFiles, Exported, Loaded, area_m2};
+use forcewright::{Choices, DiskFiles, Exported, Loaded};
 
-use super::solve::{requirement_table, show};
+use super::solve::{repeat_command, requirement_table, show};
 use super::{choices, refuse};
 use crate::{exit, output};
 
@@ -18,19 +18,26 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let (Some(file), Some(out)) = (matches.get_one::<PathBuf>("file"), matches.get_one::<PathBuf>("out")) else { return exit::USAGE };
     let as_json = matches.get_flag("json");
     let formats: Vec<Format> = matches.get_many::<Format>("format").map(|all| all.copied().collect()).unwrap_or_default();
-    let loaded = match Loaded::from_file(&DiskFiles, file, &choices(matches)) {
+    let choices = choices(matches);
+    let loaded = match Loaded::from_file(&DiskFiles, file, &choices) {
         Ok(loaded) => loaded,
         Err(refused) => return refuse(&refused, as_json),
     };
     output::narrate(&loaded.project.diagnostics.render(&loaded.project.sources, output::colour_on_stderr()));
-    let exported = match loaded.export(&stem(file), &formats, &Options::default()) {
+    let stem = stem(file, &choices);
+    let exported = match loaded.export(&stem, &formats, &Options::default()) {
         Ok(exported) => exported,
         Err(none) => {
             output::complain(none.code, &none.message, &none.help, as_json);
             return exit::USAGE;
         }
     };
-    if let Err(failed) = output::prepare(out).and_then(|()| output::write_all(out, &exported.files)) {
+    let list: Vec<&str> = formats.iter().map(|f| f.extension()).collect();
+    let command = format!("{} --format {}", repeat_command("export", file, Some(out), &choices), list.join(","));
+    let page = exported.page(&file.display().to_string(), choices.variant.as_deref(), &command);
+    let mut files = exported.files.clone();
+    files.push((format!("{stem}-part.html"), page.into_bytes()));
+    if let Err(failed) = output::prepare(out).and_then(|()| output::write_all(out, &files)) {
         return output::write_failed(&failed, as_json);
     }
     if as_json {
@@ -38,15 +45,16 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     } else {
         show(&summary(&exported));
     }
-    let names: Vec<&str> = exported.files.iter().map(|(name, _)| name.as_str()).collect();
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     output::narrate(&visible(&format!("wrote {} in {}", names.join(", "), out.display())));
     output::narrate("\n");
     if exported.can_be_made() { exit::MET } else { exit::MISSED }
 }
 
-/// What files are named after: the project file without its ending.
-fn stem(file: &Path) -> String {
-    file.file_stem().map_or_else(|| "part".to_owned(), |stem| stem.to_string_lossy().into_owned())
+/// What files are named after: the project file without its ending, and the variant, whose part is another one.
+fn stem(file: &Path, choices: &Choices) -> String {
+    let own = file.file_stem().map_or_else(|| "part".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    choices.variant.as_ref().map_or(own.clone(), |variant| format!("{own}-{variant}"))
 }
 
 /// The formats of a list such as `dxf,step`.
@@ -58,16 +66,18 @@ fn summary(exported: &Exported) -> String {
     let mut text = String::new();
     let millimetres = |m: f64| format_number(1e3 * m, 5);
     for part in &exported.set.parts {
-        let bounds = part.outline.bounds();
-        let [width, height] = [0, 1].map(|k| millimetres(bounds.max_m[k] - bounds.min_m[k]));
+        let [width, height] = part.size_m().map(millimetres);
         let material = part.material.as_ref().map_or_else(String::new, |m| format!(", {m}"));
         let _ = writeln!(text, "{}: {width} × {height} × {} mm{material}", part.name, millimetres(part.depth_m));
+        let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+        let mass = part.mass_kg().map_or_else(String::new, |kg| format!(", {} g", format_number(1e3 * kg, 3)));
         let _ = writeln!(
             text,
-            "  area {} mm², {} cut-outs, {} holes",
-            format_number(1e6 * area_m2(part), 6),
-            part.cutouts.len(),
-            part.holes.len()
+            "  area {} mm²{mass}, cut length {} mm, {}, {}",
+            format_number(1e6 * part.area_m2(), 6),
+            millimetres(part.cut_length_m()),
+            count(part.cutouts.len(), "window"),
+            count(part.holes.len(), "hole")
         );
         for note in &part.notes {
             let _ = writeln!(text, "  {note}");

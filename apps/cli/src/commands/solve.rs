@@ -39,12 +39,15 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         return output::write_failed(&failed, as_json);
     }
     let mut bar = Progress::new("solving");
-    let report =
+    let mut report =
         loaded.solve(&file.display().to_string(), &repeat_command("solve", file, out.map(PathBuf::as_path), &choices), &mut |fraction| {
             bar.show(fraction);
             true
         });
     bar.done();
+    if out.is_some() {
+        report.figures.extend(loaded.part_figure());
+    }
     let document = output::json_text(&json::document(&report.outcome, &report.input_sha256, &report.version));
     if as_json {
         output::print(&document);

@@ -54,6 +54,11 @@ fn finish(found: &Synthesised, matches: &ArgMatches, file: &Path, folder: &Path)
         // The document, if one was asked for, is printed already.
         return output::write_failed(&failed, false);
     }
+    let old = earlier(file, folder, &files);
+    if !old.is_empty() {
+        let list = old.join(", ");
+        output::narrate(&format!("{}\n", visible(&format!("note: {list} in {} are of an earlier synthesis", folder.display()))));
+    }
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     output::narrate(&format!("{}\n", visible(&format!("wrote {} in {}", names.join(", "), folder.display()))));
     match (found.interrupted, found.met()) {
@@ -61,6 +66,22 @@ fn finish(found: &Synthesised, matches: &ArgMatches, file: &Path, folder: &Path)
         (false, true) => exit::MET,
         (false, false) => exit::MISSED,
     }
+}
+
+/// Project files of an earlier synthesis of the same file, `FILE-2-SHAPE.toml`, that this one has not written: they are left as they are,
+/// since somebody may have gone on from them.
+fn earlier(file: &Path, folder: &Path, written: &[(String, String)]) -> Vec<String> {
+    let stem = format!("{}-", file.file_stem().unwrap_or_default().to_string_lossy());
+    let ours = |name: &String| {
+        let rest = name.strip_prefix(&stem).and_then(|rest| rest.strip_suffix(".toml"));
+        let number =
+            rest.and_then(|rest| rest.split_once('-')).is_some_and(|(n, _)| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()));
+        number && !written.iter().any(|(own, _)| own == name)
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
+    let mut names: Vec<String> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).filter(ours).collect();
+    names.sort_unstable();
+    names
 }
 
 /// What is printed.

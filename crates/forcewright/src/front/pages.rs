@@ -288,7 +288,7 @@ impl Front {
         let plot_of = |report: &Report| {
             report.figures.iter().find_map(|f| match &f.content {
                 FigureContent::Plot(plot) => Some((f.title.clone(), plot.clone())),
-                FigureContent::Scene(_) => None,
+                FigureContent::Scene(_) | FigureContent::Part(_) => None,
             })
         };
         let (title, mut plot) = plot_of(shown.first()?.1)?;

@@ -63,7 +63,13 @@ impl Synthesised {
         let names: Vec<&'static str> = self.designs.first().map_or_else(Vec::new, |d| d.proposal.sizes.iter().map(|s| s.0).collect());
         let mut columns = vec![number("Design"), text("Shape")];
         columns.extend(names.iter().map(|name| number(name)));
-        columns.extend([number("Room taken"), number("Least margin"), text("Requirements"), StudyColumn::Code("File".to_owned())]);
+        columns.extend([
+            number("Room taken"),
+            number("Least margin"),
+            text("Requirements"),
+            text("Warnings"),
+            StudyColumn::Code("File".to_owned()),
+        ]);
         let row = |(i, d): (usize, &Designed)| {
             let mut row = vec![(i + 1).to_string(), d.proposal.title.clone()];
             row.extend(d.proposal.sizes.iter().map(|s| s.1.clone()));
@@ -71,6 +77,7 @@ impl Synthesised {
             row.push(d.margin().map_or_else(|| "–".to_owned(), |m| format!("{} %", format_number(100.0 * m, 2))));
             let searched = if d.searched { ", after a search" } else { "" };
             row.push(format!("{}{searched}", if d.met() { "met" } else { "missed" }));
+            row.push(if codes(d).is_empty() { "–".to_owned() } else { codes(d).join(", ") });
             row.push(d.file.clone());
             row
         };
@@ -127,7 +134,7 @@ impl Synthesised {
         let plot_of = |report: &Report| {
             report.figures.iter().find_map(|f| match &f.content {
                 FigureContent::Plot(plot) => Some((f.title.clone(), plot.clone())),
-                FigureContent::Scene(_) => None,
+                FigureContent::Scene(_) | FigureContent::Part(_) => None,
             })
         };
         let (title, mut plot) = plot_of(&self.designs.first()?.report)?;
@@ -145,6 +152,14 @@ impl Synthesised {
             content: FigureContent::Plot(plot),
         })
     }
+}
+
+/// The codes of what a design's analysis warns of, each once.
+fn codes(design: &Designed) -> Vec<&'static str> {
+    let mut all: Vec<&'static str> = design.report.outcome.warnings.iter().map(|w| w.code).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// `safety factor 1.2 (now 1.5)`.

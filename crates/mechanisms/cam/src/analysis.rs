@@ -12,7 +12,7 @@ use crate::motion::{self, Moment};
 use crate::path::{Corner, corner, curvature_per_m, frame};
 
 /// Stations over the stroke, for curves and pictures.
-pub const STATIONS: usize = 480;
+pub(crate) const STATIONS: usize = 480;
 /// Panels of the window, for means; extremes are taken at their ends and middles.
 const PANELS: usize = 400;
 

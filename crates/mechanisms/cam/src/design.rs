@@ -37,6 +37,8 @@ pub struct Design {
     pub making: Making,
     /// Whether the slider is free to move sideways.
     pub free_guide: bool,
+    /// Pitch of the screw that stretches the springs, m.
+    pub adjust_pitch_m: Option<f64>,
     /// Materials of cam and roller.
     pub materials: [Option<Material>; 2],
     /// Friction that is there between roller and cam.
@@ -207,6 +209,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         motion,
         making: making_of(spec, roller_m)?,
         free_guide: spec.motion.guide.as_ref().is_some_and(|g| g.value == "free"),
+        adjust_pitch_m: si(&spec.design.springs.adjust.pitch),
         materials,
         friction: si(&spec.design.friction),
         requirements,
@@ -453,7 +456,7 @@ fn fill(material: &mut spec::Material, diagnostics: &mut Diagnostics) -> Materia
             take(&mut material.young_modulus, entry.young_modulus_pa.as_ref(), Dimension::Stress, "GPa");
             take(&mut material.poisson_ratio, entry.poisson_ratio.as_ref(), Dimension::Ratio, "1");
             take(&mut material.yield_stress, entry.yield_stress_pa.as_ref(), Dimension::Stress, "MPa");
-            let _ = &entry.note;
+            take(&mut material.density, entry.density_kg_per_m3.as_ref(), Dimension::Density, "kg/m^3");
         } else {
             let near = forcewright_base::text::closest(&wanted.value, materials::names());
             diagnostics.push(

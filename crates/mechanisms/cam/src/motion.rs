@@ -70,13 +70,13 @@ pub struct Moment {
 }
 
 /// Steps between the ends.
-pub const STEPS: usize = 400;
+pub(crate) const STEPS: usize = 400;
 
 /// Forces over a motion, at even times.
 ///
 /// # Errors
 /// [`NotAssembled`] if the mechanism does not reach a place on the way.
-pub fn run(mechanism: &Mechanism, motion: &Motion) -> Result<Vec<Moment>, NotAssembled> {
+pub(crate) fn run(mechanism: &Mechanism, motion: &Motion) -> Result<Vec<Moment>, NotAssembled> {
     let sense = if motion.rise_m >= 0.0 { Sense::Up } else { Sense::Down };
     let mut pose = None;
     (0..=STEPS)

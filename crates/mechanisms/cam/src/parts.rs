@@ -9,12 +9,13 @@ use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::judge::Comparison;
 use forcewright_curves::fit::{Arcs, Oriented, arcs};
 use forcewright_curves::{Profile, Segment};
-use forcewright_model::{Check, Hole, NoPart, Part, PartSet, Sense};
+use forcewright_model::{Check, Hole, NoPart, Part, PartSet, Sense, Sheet};
 
 use crate::analysis::Behaviour;
 use crate::cut::SIDES;
 use crate::design::Design;
 use crate::path::{SidePath, Vector, frame};
+use crate::springs::{Bank, SpringLaw};
 
 /// How the parts are made, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +38,9 @@ pub struct Making {
 
 /// Places at which the arcs are compared with the profile.
 const PROBES: usize = 2000;
+
+/// Intervals between the places of a side to be measured.
+const INSPECTED: u32 = 24;
 
 /// A profile as it is drawn.
 pub(crate) struct Drawn {
@@ -167,6 +171,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
     let cost = cost_of_arcs(design, &behaviour, &profiles);
     let notes = cam_notes(design, &behaviour, &profiles, cost);
     let material = |index: usize| design.materials[index].as_ref().map(|m| m.name.clone());
+    let density = |index: usize| design.materials[index].as_ref().and_then(|m| m.density_kg_per_m3);
     let mut parts = Vec::new();
     if design.built.extension {
         parts.push(Part {
@@ -174,8 +179,10 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
             title: "Cam plate".to_owned(),
             material: material(0),
             depth_m: thickness_m,
+            density_kg_per_m3: density(0),
             outline: plate(making, &profiles),
             cutouts: Vec::new(),
+            fillets: None,
             holes: mounting_holes(making, &profiles),
             notes,
         });
@@ -186,8 +193,10 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
                 title: format!("Cam plate, {}", ["right", "left"][drawn.side]),
                 material: material(0),
                 depth_m: thickness_m,
+                density_kg_per_m3: density(0),
                 outline: outer_plate(making, drawn),
                 cutouts: Vec::new(),
+                fillets: None,
                 holes: Vec::new(),
                 notes: notes.clone(),
             });
@@ -197,7 +206,8 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
     parts.extend(braces(design));
     parts.push(pin(design, thickness_m));
     let checks = vec![chord_check(design, cost)];
-    Ok(PartSet { parts, checks })
+    let sheets = vec![inspection(design, &behaviour), order(design, &behaviour)];
+    Ok(PartSet { parts, marks: Vec::new(), sheets, display: design.units.length.clone(), checks })
 }
 
 fn cam_notes(design: &Design, behaviour: &Behaviour, profiles: &[Drawn; SIDES], cost: f64) -> Vec<String> {
@@ -219,6 +229,103 @@ fn cam_notes(design: &Design, behaviour: &Behaviour, profiles: &[Drawn; SIDES], 
         ));
     }
     notes
+}
+
+/// Places of the cam to be measured: the exact profile, its normal, and what the measured deviation does to the force.
+fn inspection(design: &Design, behaviour: &Behaviour) -> Sheet {
+    let cut = &behaviour.cut;
+    let sense = cut.purpose().springs.sense();
+    let [from, to] = cut.range_m();
+    let number = |value: f64, digits: usize| format!("{value:.digits$}");
+    let mut rows = Vec::new();
+    for side in 0..SIDES {
+        let path = &behaviour.mechanism.paths[side];
+        let start = behaviour.corners[side].map_or(from, |c| c.lambda_m);
+        for i in 0..=INSPECTED {
+            let u = f64::from(i) / f64::from(INSPECTED);
+            let lambda = start + (to - start) * u;
+            let place = path.designed(lambda);
+            let [_, normal] = frame(&place, sense);
+            let on_cam = surface(design, path, lambda).point_m;
+            let sign = if side == 0 { 1.0 } else { -1.0 };
+            let brace = cut.purpose().sides[side].brace_m;
+            let tan = place.at[0] / (brace * brace - place.at[0] * place.at[0]).sqrt();
+            let point = cut.at(side, lambda);
+            let tension = cut.purpose().springs.tension_n(cut.purpose().start_length_m + sense * lambda)[0].abs();
+            // A slope of 1 µm/mm along the travel on this side: δF = P d(δx)/ds.
+            let per_slope = 1e-3 * tension / (normal[0] + normal[1] * tan).abs();
+            rows.push(vec![
+                ["right", "left"][side].to_owned(),
+                number(1e3 * point.s.value(), 3),
+                number(sign * 1e3 * on_cam[0], 4),
+                number(1e3 * on_cam[1], 4),
+                number(sign * normal[0], 5),
+                number(normal[1], 5),
+                number(per_slope, 4),
+            ]);
+        }
+    }
+    let columns = ["side", "travel / mm", "x / mm", "y / mm", "normal x", "normal y", "force per slope of 1 µm/mm / N"];
+    Sheet {
+        name: "inspection".to_owned(),
+        caption: "Places of the cam to be measured, with the normal outwards; the last column is the force that a deviation along the normal adds for each micrometre that it grows per millimetre of travel.".to_owned(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows,
+    }
+}
+
+/// The springs to order, and what a turn of the adjusting screw does.
+fn order(design: &Design, behaviour: &Behaviour) -> Sheet {
+    let number = |value: f64| format_number(value, 5);
+    let stations = &behaviour.stations;
+    let [shortest, longest] = Behaviour::extent(stations, |s| s.still.spring_m);
+    let pitch_m = design.adjust_pitch_m.unwrap_or(0.0);
+    let middle = stations.get(stations.len() / 2);
+    let rows = design
+        .built
+        .springs
+        .iter()
+        .enumerate()
+        .map(|(i, spring)| {
+            let one = Bank::new(vec![spring.clone()], design.built.extension);
+            let force = |length: f64| one.tension_n(length)[0].abs();
+            // F = P dL/ds: a turn changes P by the rate times the pitch.
+            let turn = middle.map_or(0.0, |s| {
+                let [total, _] = Bank::new(design.built.springs.clone(), design.built.extension).tension_n(s.still.spring_m);
+                s.still.force_n * one.tension_n(s.still.spring_m)[1] * pitch_m / total.abs()
+            });
+            let (rate, rest) = match &spring.law {
+                SpringLaw::Linear { rate_n_per_m, rest_m } => (number(1e-3 * rate_n_per_m), number(1e3 * rest_m)),
+                SpringLaw::Table(_) => ("by its curve".to_owned(), "by its curve".to_owned()),
+            };
+            vec![
+                (i + 1).to_string(),
+                rate,
+                rest,
+                number(1e3 * shortest),
+                number(1e3 * longest),
+                number(force(shortest)),
+                number(force(longest)),
+                if pitch_m > 0.0 { number(turn) } else { "–".to_owned() },
+            ]
+        })
+        .collect();
+    let columns = [
+        "spring",
+        "rate / N/mm",
+        "rest length / mm",
+        "shortest / mm",
+        "longest / mm",
+        "force there / N",
+        "largest force / N",
+        "force of the mechanism per turn in mid-stroke / N",
+    ];
+    Sheet {
+        name: "springs".to_owned(),
+        caption: "Springs to order, lengths between the axles; and what one turn of the adjusting screw of a spring adds to the force of the mechanism.".to_owned(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows,
+    }
 }
 
 fn mirrored([x, y]: Vector) -> Vector {
@@ -291,8 +398,10 @@ fn roller(design: &Design, material: Option<String>, thickness_m: f64) -> Part {
         title: "Roller (2)".to_owned(),
         material,
         depth_m: thickness_m,
+        density_kg_per_m3: design.materials[1].as_ref().and_then(|m| m.density_kg_per_m3),
         outline: Profile::circle([0.0; 2], design.cut_roller_m),
         cutouts: Vec::new(),
+        fillets: None,
         holes: vec![Hole { centre_m: [0.0; 2], diameter_m: pin_m, purpose: "axle".to_owned() }],
         notes: vec!["A ball bearing of this outer diameter does as well.".to_owned()],
     }
@@ -322,9 +431,11 @@ fn braces(design: &Design) -> Vec<Part> {
             name: name.to_owned(),
             title: title.to_owned(),
             material: None,
+            density_kg_per_m3: None,
             depth_m: making.brace_thickness_m,
             outline,
             cutouts: Vec::new(),
+            fillets: None,
             holes: vec![hole(0.0, "axle of the roller"), hole(length_m, "joint of the slider")],
             notes: vec!["The distance of the holes is the brace length: it moves the force little, the two of a pair should be equal.".to_owned()],
         }
@@ -342,9 +453,11 @@ fn pin(design: &Design, thickness_m: f64) -> Part {
         name: "pin".to_owned(),
         title: "Axle (2), without what carries the springs".to_owned(),
         material: None,
+        density_kg_per_m3: None,
         depth_m: thickness_m + 2.0 * making.brace_thickness_m,
         outline: Profile::circle([0.0; 2], 0.5 * making.pin_m),
         cutouts: Vec::new(),
+        fillets: None,
         holes: Vec::new(),
         notes: vec!["Longer where several springs stand side by side on it.".to_owned()],
     }

@@ -12,7 +12,7 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::units::{Dimension, Unit};
 use forcewright_contract::data::{Column, rows};
 use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser};
-use forcewright_model::{Outcome, StatusKind};
+use forcewright_model::{Outcome, ParameterRow, StatusKind};
 
 use crate::design::{Design, si};
 use crate::metrics::METRICS;
@@ -161,6 +161,11 @@ impl Synthesiser for Synthesis {
 
     fn judge(&self, _: &Proposal, outcome: &Outcome) -> Judgement {
         if outcome.status.kind == StatusKind::Complete { Judgement::Keep } else { Judgement::Reject(outcome.status.message.clone()) }
+    }
+
+    fn searched(&self, proposal: &Proposal, _: &[ParameterRow]) -> Proposal {
+        // Its files have nothing that a search could change.
+        proposal.clone()
     }
 
     fn alike(&self, a: &Proposal, b: &Proposal) -> bool {

@@ -10,6 +10,7 @@ use crate::analysis::{Behaviour, Measured, display_unit};
 use crate::design::{Design, Requirements, StressLimit};
 use crate::loads::Control;
 use crate::metrics::METRICS;
+use crate::pads;
 use crate::scenario;
 
 /// Every requirement of the project, in the order of the language.
@@ -26,6 +27,8 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.extend(context.fatigue());
     all.extend(context.hold());
     all.extend(context.limits());
+    // Pads that nobody has drawn are worth a word only where they are in the way.
+    all.extend(pads::check(design, behaviour, design.making.is_drawn()).filter(|c| c.required || c.state == CheckState::Missed));
     all
 }
 
@@ -113,7 +116,7 @@ fn percent() -> Unit {
 }
 
 /// A positive value cut to so many digits: advice that is followed to the letter must not overshoot.
-fn rounded_down(value: f64, digits: i32) -> f64 {
+pub(crate) fn rounded_down(value: f64, digits: i32) -> f64 {
     let place = forcewright_base::maths::log10(value).floor();
     if !place.is_finite() {
         return value;
@@ -375,7 +378,7 @@ impl Context<'_> {
 
     /// COMP007: inside the envelope.
     fn envelope(&self) -> Option<Check> {
-        let envelope = self.requirements.envelope?;
+        let asked = self.requirements.asked_envelope?;
         let found = self.measured.margin;
         let units = &self.design.units;
         let place = found.map_or_else(String::new, |m| {
@@ -383,7 +386,7 @@ impl Context<'_> {
             let at = format_si(m.at_m, &units.displacement, 4);
             format!(" (beam {beam}, u = {}, Δ = {at}{})", format_number(m.u, 3), self.so_far())
         });
-        let sides = (0..2).map(|k| envelope.high_m[k] - envelope.low_m[k]).filter(|s| s.is_finite());
+        let sides = (0..2).map(|k| asked.high_m[k] - asked.low_m[k]).filter(|s| s.is_finite());
         let comparison = Comparison {
             code: "COMP007",
             name: "envelope".to_owned(),
@@ -394,7 +397,7 @@ impl Context<'_> {
             dimension: Dimension::Length,
             display: units.length.clone(),
             scale: sides.reduce(f64::min),
-            basis: "surfaces of the drawn beams, at rest and over the travel; the margin is relative to the smaller side of the envelope"
+            basis: "surfaces of the beams and their copies in the plane, at rest and over the travel; the margin is relative to the smaller side of the envelope"
                 .to_owned(),
             fix: if found.is_some_and(|m| m.u <= 0.0 || m.u >= 1.0) {
                 "the end of a beam is round: it reaches half the thickness beyond its node; widen the envelope by that, or move the node"

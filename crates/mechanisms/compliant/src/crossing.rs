@@ -235,8 +235,19 @@ impl Joints {
 }
 
 /// Largest thickness of a beam, m.
-fn thickest_m(beam: &Beam) -> f64 {
+pub(crate) fn thickest_m(beam: &Beam) -> f64 {
     if beam.profile.is_empty() { beam.section.thickness_m } else { beam.profile.iter().map(|p| p[1]).fold(0.0, f64::max) }
+}
+
+/// The axis of every beam in a state as 32 chords, m.
+pub(crate) fn axes_m(design: &Design, point: &Point) -> Vec<Vec<[f64; 2]>> {
+    let axis = |(beam, state): (&Beam, &BeamState)| {
+        let (rest, moved) = (design.network.nodes[beam.start].position_m, point.nodes[beam.start].displacement_m);
+        let mut points = Vec::with_capacity(CHORDS + 1);
+        lay(beam, state, design.theory, [rest[0] + moved[0], rest[1] + moved[1]], &mut points);
+        points
+    };
+    design.network.beams.iter().zip(&point.beams).map(axis).collect()
 }
 
 /// Lays the deformed axis of a beam from its start: what [`BeamState::shape_m`] gives, but each chord goes on from the one before, for a

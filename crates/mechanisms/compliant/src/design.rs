@@ -123,7 +123,9 @@ pub struct Requirements {
     pub stiffness_min: f64,
     /// Largest slope, N/m.
     pub stiffness_max: Option<f64>,
-    /// The box that the drawn network stays in with its thickness.
+    /// The box asked for, that the layout or the drawn network stays in with its thickness.
+    pub asked_envelope: Option<Envelope>,
+    /// The box that the drawn network stays in: where it does, its copies are in the box asked for.
     pub envelope: Option<Envelope>,
     /// Limits on metrics: index into [`METRICS`], smallest, largest, unit typed.
     pub limits: Vec<(usize, Option<f64>, Option<f64>, Unit)>,
@@ -211,7 +213,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     spec.design.nodes.sort_by(|a, b| a.name.value.cmp(&b.name.value));
     spec.design.beams.sort_by(|a, b| a.name.value.cmp(&b.name.value));
     let used = fill_materials(spec, diagnostics);
-    let requirements = requirements_of(spec, used.materials.iter().all(|m| m.yield_pa.is_some()), diagnostics);
+    let mut requirements = requirements_of(spec, used.materials.iter().all(|m| m.yield_pa.is_some()), diagnostics);
     let mut builder = Builder { spec, diagnostics, place };
     let built = builder.network()?;
     let mirror = builder.mirror(&built);
@@ -227,6 +229,10 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         check_mirror(&network, &drawn, mirror, spec, diagnostics);
     }
     let layout = layout::resolve(spec, mirror, &network, &loads, diagnostics);
+    if let Some(requirements) = requirements.as_mut().filter(|_| spec.requirements.envelope.of.as_ref().is_none_or(|o| o.value == "layout"))
+    {
+        requirements.envelope = requirements.envelope.map(|asked| layout.for_drawn(asked));
+    }
     let surface = scenario::resolve(spec, &network, &loads, diagnostics);
     if diagnostics.has_errors() {
         return None;
@@ -366,6 +372,7 @@ fn requirements_of(spec: &Spec, yield_is_known: bool, diagnostics: &mut Diagnost
     check_order("stiffness.", requirements.stiffness.min.as_ref(), requirements.stiffness.max.as_ref(), diagnostics);
     let envelope = envelope_of(requirements, sound, diagnostics);
     Some(Requirements {
+        asked_envelope: envelope,
         envelope,
         force: si(requirements.force.band.as_ref()).map(|band| (band, si(requirements.force.nominal.as_ref()))),
         travel_m: si(requirements.travel.as_ref()),

@@ -37,7 +37,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "COMP007",
         "envelope",
-        "Smallest distance of the surfaces of the drawn beams to the sides of `requirements.envelope`, at rest and over the travel; negative where a beam sticks out. The mirrored half stays in the mirrored envelope. Blocks and clamps are not looked at.\n\nA beam is all that is within half its thickness of its axis, as for `clearance_min`: its ends are round, and a beam that ends on a side sticks out by half its thickness there. Draw the side half a thickness behind the clamps. The design box of Lan, Wang & Chen 2010 (Table 1, constraint (ii)) holds the axes, with n1, n2 and n5 on its sides; to ask for the same, widen it by half the thickness.",
+        "Smallest distance of the surfaces of the beams to the sides of `requirements.envelope`, at rest and over the travel; negative where a beam sticks out. The copies in the drawn plane count: mirrored half, rows, and of legs around an axis the one opposite to the drawn one. With `of = \"drawn\"` it is the drawn network alone. Layers in series are each in the box by themselves, since their distance is not known. Blocks and clamps are not looked at.\n\nA beam is all that is within half its thickness of its axis, as for `clearance_min`: its ends are round, and a beam that ends on a side sticks out by half its thickness there. Draw the side half a thickness behind the clamps. The design box of Lan, Wang & Chen 2010 (Table 1, constraint (ii)) holds the axes, with n1, n2 and n5 on its sides; to ask for the same, widen it by half the thickness.",
     ),
     code(
         "COMP008",
@@ -63,6 +63,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "COMP012",
         "narrowest gap of the part",
         "The diameter of the smallest circle that fits into what is cut out, between two faces of the outline, against `process.gap_min`, or the diameter of the cutter. Corners sharper than the cutter are filled by fillets before.",
+    ),
+    code(
+        "COMP013",
+        "pads against what moves",
+        "Smallest distance, at rest and over the travel, of the surfaces of beams and blocks to the pads and blocks of the part: those where nodes are held and where rigid bodies are, as large as `[parts]` says. A beam is not compared with what it ends in, nor a block with another one that moves like it; the mirrored half and the neighbouring rows count. Negative where they overlap: the part would stop there, before the end of its travel.\n\nRequired where the file has a section `[parts]`, and of every part that is exported; otherwise a further check with pads of the usual size. Looked at in 33 states, with 32 chords per beam and the thickness of its thickest place.",
     ),
     code(
         "E0501",
@@ -171,7 +176,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "E0518",
         "no part in one piece",
-        "The drawn beams, pads and blocks make no plate that can be cut in one piece: something turns on a hinge or a bearing, a fillet does not fit between two beams, or material runs into other material. The message names the place.",
+        "The drawn beams, pads and blocks make no plate that can be cut in one piece: something turns on a hinge or a bearing, a fillet does not fit between two beams, or material runs into other material. The message names the place.\n\nWhere the halves of a mirrored layout meet at the load node they are joined directly. A clamped node or a rigid body on the mirror line would need a pad or a block without width: draw the beams up to its sides.",
     ),
     code(
         "E0519",

@@ -126,7 +126,8 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
         }
     }
     let mut spans = Vec::new();
-    if let Some(usable) = measured.usable {
+    let banded = design.requirements.as_ref().is_some_and(|r| r.force.is_some());
+    if let Some(usable) = measured.usable.filter(|_| banded) {
         spans.push(VerticalSpan {
             from: usable.start,
             to: usable.end,

@@ -8,7 +8,7 @@ use forcewright_base::units::{Dimension, Quantity};
 use forcewright_beam::{Image, Network, Reflection, Rotation, Support};
 use forcewright_contract::describe::Located;
 
-use crate::design::unit;
+use crate::design::{Envelope, unit};
 use crate::loads::Loads;
 use crate::spec::{self, Spec};
 
@@ -126,6 +126,30 @@ impl Layout {
             }
         }
         all
+    }
+
+    /// The box for the drawn network within which every copy in the drawn plane is in a given one: its mirrored half, the rows, and the leg
+    /// opposite to it around an axis along x or y. Layers stand at a distance that is not known, each in a box of its own.
+    pub(crate) fn for_drawn(&self, whole: Envelope) -> Envelope {
+        let opposite = self.circle.filter(|c| c.count % 2 == 0).and_then(|c| match c.outward {
+            [_, y] if y.abs() < 1e-12 => Some(Mirror::X(c.axis_m[0])),
+            [x, _] if x.abs() < 1e-12 => Some(Mirror::Y(c.axis_m[1])),
+            _ => None,
+        });
+        let rows = self.rows.unwrap_or(Rows { count: 1, step_m: [0.0; 2] });
+        let mut common = whole;
+        for row in 0..rows.count {
+            for mirror in [None, self.mirror.or(opposite)] {
+                let seen = |p: [f64; 2]| {
+                    let p = [0, 1].map(|k| p[k] - f64::from(row) * rows.step_m[k]);
+                    mirror.map_or(p, |m| m.image(p))
+                };
+                let (a, b) = (seen(whole.low_m), seen(whole.high_m));
+                common.low_m = [0, 1].map(|k| common.low_m[k].max(a[k].min(b[k])));
+                common.high_m = [0, 1].map(|k| common.high_m[k].min(a[k].max(b[k])));
+            }
+        }
+        common
     }
 
     /// What it is, in words after a network: `, with its mirrored half, in 2 rows`; empty for the drawn network alone.

@@ -16,6 +16,7 @@ mod layout;
 mod loads;
 mod material;
 mod metrics;
+mod pads;
 mod parts;
 mod reproduce;
 mod room;
@@ -64,7 +65,7 @@ impl Mechanism for Compliant {
     type Design = Design;
 
     const ID: &'static str = "compliant";
-    const TITLE: &'static str = "Compliant constant-force mechanism";
+    const TITLE: &'static str = "Compliant mechanism of flexible beams";
 
     fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
         design::resolve(spec, diagnostics)

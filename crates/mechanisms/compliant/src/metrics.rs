@@ -59,7 +59,7 @@ pub const METRICS: &[MetricInfo] = &[
         "envelope_margin",
         Dimension::Length,
         false,
-        "Smallest distance of the surfaces of the drawn beams to the envelope, at rest and over the travel.",
+        "Smallest distance of the surfaces of the beams and their copies in the plane to the envelope, at rest and over the travel.",
     ),
     metric("contact_force_max", Dimension::Force, true, "Largest contact force along the guide, over the way in contact with the surface."),
     metric(

@@ -1,15 +1,18 @@
 //! From a design to the plate that is cut: beams with their thickness, fillets, pads where it is held, blocks, holes.
 
 use forcewright_base::maths;
-use forcewright_base::units::{Dimension, Unit, format_si};
+use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_beam::{Beam, Image, Joint as BeamJoint, Rotation, Support};
-use forcewright_curves::Profile;
-use forcewright_curves::outline::{AxisPoint, Block, Cap, HalfWidth, Joint, Network, Node, Outline, OutlineError, Strip, Tag};
+use forcewright_curves::outline::{AxisPoint, Block, Cap, HalfWidth, Joint, Network, Node, Outline, OutlineError, Region, Strip, Tag};
 use forcewright_curves::walls::{Narrow, narrowest_gap, thinnest_wall};
-use forcewright_model::{Check, CheckState, Hole, NoPart, Part, PartSet, Sense};
+use forcewright_curves::{Profile, Segment};
+use forcewright_model::{Check, CheckState, Fillets, Hole, NoPart, Part, PartMark, PartSet, Sense};
 
+use crate::analysis::Behaviour;
+use crate::checks::rounded_down;
 use crate::design::Design;
 use crate::layout::Mirror;
+use crate::pads;
 use crate::scene::hull;
 
 /// Splines of a part follow the sides of its beams within this, m: a hundredth of what a good machine holds.
@@ -39,6 +42,11 @@ pub struct Making {
 }
 
 impl Making {
+    /// Whether the file says how large pads, holes or fillets are.
+    pub(crate) fn is_drawn(&self) -> bool {
+        self.pad_m.is_some() || self.hole_m.is_some() || self.fillet_m.is_some()
+    }
+
     /// Radius of the fillets, m: as given, or else that of the cutter, or half a thickness.
     fn fillet_m(&self, thickness_m: f64) -> f64 {
         self.fillet_m.or(self.cutter_m.map(|d| 0.5 * d)).unwrap_or(0.5 * thickness_m)
@@ -64,31 +72,41 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
     let holes = drawing.holes(&outline)?;
     let mut profiles = outline.profiles();
     profiles.extend(holes.iter().map(|h| Profile::circle(h.centre_m, 0.5 * h.diameter_m).reversed()));
-    let checks = checks(design, &profiles);
-    Ok(PartSet { parts: drawing.parts(&outline, &holes), checks })
+    let narrow = [("thinnest wall", thinnest_wall(&profiles)), ("narrowest gap", narrowest_gap(&profiles))];
+    let marks = narrow.iter().filter_map(|(what, found)| {
+        let found = found.as_ref()?;
+        Some(PartMark { at_m: middle(found), text: format!("{what} {}", format_si(found.width_m, &design.units.length, 4)) })
+    });
+    let (parts, marks) = (drawing.parts(&outline, &holes), marks.collect());
+    let mut checks = checks(design, narrow.map(|(_, found)| found));
+    if let Ok(behaviour) = Behaviour::of(design, &mut |_| true) {
+        checks.extend(pads::check(design, &behaviour.trusted(design), true));
+    }
+    Ok(PartSet { parts, marks, sheets: Vec::new(), display: design.units.length.clone(), checks })
 }
 
 /// A pad or a rigid body: where the material is as good as rigid.
-struct Solid {
+pub(crate) struct Solid {
     /// What it is called after: its node or body.
-    name: String,
-    corners_m: Vec<[f64; 2]>,
+    pub(crate) name: String,
+    pub(crate) corners_m: Vec<[f64; 2]>,
     /// Where a hole may be, m: the middle.
     middle_m: [f64; 2],
     /// The network's node, and the copy it belongs to; a solid across the mirror line belongs to both.
-    node: usize,
-    copies: Vec<usize>,
+    pub(crate) node: usize,
+    pub(crate) copies: Vec<usize>,
 }
 
-struct Drawing<'a> {
+/// The drawn network and its mirrored half with their pads and blocks.
+pub(crate) struct Drawing<'a> {
     design: &'a Design,
     /// The drawn network and its mirrored half.
-    images: Vec<Image>,
-    solids: Vec<Solid>,
+    pub(crate) images: Vec<Image>,
+    pub(crate) solids: Vec<Solid>,
     /// Places of free nodes, m, with the network's node.
     nodes: Vec<[f64; 2]>,
     /// Per copy and beam: what its ends run into.
-    ends: Vec<Vec<[Joint; 2]>>,
+    pub(crate) ends: Vec<Vec<[Joint; 2]>>,
 }
 
 /// An axis-parallel box.
@@ -106,26 +124,28 @@ impl Frame {
 }
 
 impl<'a> Drawing<'a> {
-    fn new(design: &'a Design) -> Result<Self, NoPart> {
+    /// # Errors
+    /// [`NoPart`] where hinges or different materials make several pieces of it, or a block has no width.
+    pub(crate) fn new(design: &'a Design) -> Result<Self, NoPart> {
         one_piece(design)?;
         let layout = &design.layout;
         let count = if layout.mirror.is_some() { 2 } else { 1 };
         let images: Vec<Image> = layout.images().into_iter().take(count).collect();
         let mut drawing = Self { design, images, solids: Vec::new(), nodes: Vec::new(), ends: Vec::new() };
         for node in 0..design.network.nodes.len() {
-            drawing.add_solid(node);
+            drawing.add_solid(node)?;
         }
         drawing.ends = (0..count).map(|copy| (0..design.network.beams.len()).map(|beam| drawing.joints(copy, beam)).collect()).collect();
         Ok(drawing)
     }
 
     /// The solid of a node that is held or a body, in each copy.
-    fn add_solid(&mut self, node: usize) {
+    fn add_solid(&mut self, node: usize) -> Result<(), NoPart> {
         let design = self.design;
         let body = design.bodies.iter().find(|b| b.node == node);
         let held = !matches!(design.network.nodes[node].support, Support::Free);
         if body.is_none() && !held {
-            return;
+            return Ok(());
         }
         let mut members: Vec<usize> = match body {
             Some(body) => body.members.clone(),
@@ -138,7 +158,7 @@ impl<'a> Drawing<'a> {
         let name = body.map_or_else(|| design.node_names[node].clone(), |b| b.name.clone());
         let frames: Vec<Frame> = members.iter().filter_map(|d| self.pad(node, design.drawn[*d].position_m)).collect();
         let corners: Vec<[f64; 2]> = frames.iter().flat_map(Frame::corners).collect();
-        let Some(frame) = frames.first() else { return };
+        let Some(frame) = frames.first() else { return Ok(()) };
         // Of a pad its own middle; of a body that of all its corners.
         let middle = |all: &[[f64; 2]]| {
             let bound = |k: usize, f: fn(f64, f64) -> f64, start: f64| all.iter().map(|p| p[k]).fold(start, f);
@@ -146,6 +166,11 @@ impl<'a> Drawing<'a> {
         };
         let alone = if body.is_none() { frame.corners() } else { hull(corners) };
         let own = design.drawn[members[0]].position_m;
+        if let Some(mirror) = design.layout.mirror.filter(|m| members.iter().all(|d| m.holds(&design.network, design.drawn[*d].position_m)))
+        {
+            self.on_the_line(mirror, body.is_some(), Solid { name, middle_m: middle(&alone), corners_m: alone, node, copies: vec![0, 1] })?;
+            return Ok(());
+        }
         // The load moves both halves by one block.
         let loaded = node == design.load_node;
         if design.layout.mirror.is_some_and(|mirror| loaded || alone.iter().any(|p| beyond(mirror, own, *p))) {
@@ -153,12 +178,32 @@ impl<'a> Drawing<'a> {
             let both: Vec<[f64; 2]> = clipped.iter().flat_map(|p| self.images.iter().map(|i| i.of(*p))).collect();
             let corners_m = hull(both);
             self.solids.push(Solid { name, middle_m: middle(&corners_m), corners_m, node, copies: vec![0, 1] });
-            return;
+            return Ok(());
         }
         for (copy, image) in self.images.iter().enumerate() {
             let corners_m: Vec<[f64; 2]> = alone.iter().map(|p| image.of(*p)).collect();
             self.solids.push(Solid { name: name.clone(), middle_m: middle(&corners_m), corners_m, node, copies: vec![copy] });
         }
+        Ok(())
+    }
+
+    /// A solid all of whose nodes are on the mirror line: a pad that goes along the line is that of both halves. Of one that would go
+    /// across it, into the other half, nothing is left: there the halves are each other's continuation, and where a load is put on needs
+    /// no pad.
+    fn on_the_line(&mut self, mirror: Mirror, is_body: bool, solid: Solid) -> Result<(), NoPart> {
+        if !is_body && mirror.holds(&self.design.network, solid.middle_m) {
+            self.solids.push(solid);
+            return Ok(());
+        }
+        let held = matches!(self.design.network.nodes[solid.node].support, Support::Clamped);
+        if is_body || held {
+            let what = if is_body { "body" } else { "clamped node" };
+            return Err(no_part(
+                format!("the {what} `{}` lies on the mirror line, where both halves end in it: it has no width between them", solid.name),
+                "draw the beams up to the sides of the block: nodes beside the line, half the width of the block away from it",
+            ));
+        }
+        Ok(())
     }
 
     /// Corners with those that are nearest to the mirror line, or beyond it, moved onto it.
@@ -230,9 +275,11 @@ impl<'a> Drawing<'a> {
     }
 
     fn network(&self) -> Network<'_> {
+        self.network_with(self.fillet_m())
+    }
+
+    fn network_with(&self, fillet_m: f64) -> Network<'_> {
         let beams = &self.design.network.beams;
-        let thinnest_m = beams.iter().map(|b| b.thickness_at(0.5)).fold(f64::INFINITY, f64::min);
-        let fillet_m = self.design.making.fillet_m(thinnest_m);
         let strips = self
             .images
             .iter()
@@ -243,6 +290,30 @@ impl<'a> Drawing<'a> {
             blocks: self.solids.iter().map(|s| Block { corners_m: s.corners_m.clone(), corner_radius_m: 0.0, fillet_m }).collect(),
             strips: strips.collect(),
         }
+    }
+
+    /// Radius of the fillets, m.
+    fn fillet_m(&self) -> f64 {
+        let thinnest_m = self.design.network.beams.iter().map(|b| b.thickness_at(0.5)).fold(f64::INFINITY, f64::min);
+        self.design.making.fillet_m(thinnest_m)
+    }
+
+    /// What is said of fillets that make a beam stiffer than the one that was computed: those larger than its thickness.
+    fn long_fillets(&self) -> Option<String> {
+        let fillet_m = self.fillet_m();
+        let beams = self.design.network.beams.iter().zip(&self.design.beam_names);
+        let ends = |b: &Beam| b.thickness_at(0.0).min(b.thickness_at(1.0));
+        let (thin, name) = beams.reduce(|a, b| if ends(b.0) / b.0.shape.length_m() < ends(a.0) / a.0.shape.length_m() { b } else { a })?;
+        let show = |m: f64| format_si(m, &self.design.units.length, 3);
+        let reach = 100.0 * fillet_m / thin.shape.length_m();
+        (fillet_m > ends(thin) * (1.0 + 1e-9)).then(|| {
+            format!(
+                "Fillets of {} are larger than beam `{name}` is thick ({}): they hold up to {} % of its length at each end, and the force computed without them is too small.",
+                show(fillet_m),
+                show(ends(thin)),
+                format_number(reach, 2)
+            )
+        })
     }
 
     /// Pads and bodies leave the beams as long as they were drawn: none may cover more of one than its corner of a thickness.
@@ -292,11 +363,11 @@ impl<'a> Drawing<'a> {
             if !fits {
                 return Err(no_part(
                     format!(
-                        "a hole of {} does not fit into `{}` with a quarter of it around",
+                        "a hole of {} does not fit into `{}`: there must be material around it, as wide as a quarter of it",
                         format_si(diameter_m, &millimetres, 4),
                         solid.name
                     ),
-                    "make `parts.pad` larger or `parts.hole` smaller",
+                    "make `parts.hole` smaller, or `parts.pad` larger than one and a half holes in both directions",
                 ));
             }
             holes.push(Hole { centre_m: solid.middle_m, diameter_m, purpose: format!("in {}", solid.name) });
@@ -310,18 +381,42 @@ impl<'a> Drawing<'a> {
         let depth_m = design.network.beams.iter().map(|b| b.section.depth_m).fold(0.0, f64::max);
         let each = layout.copies() / self.images.len() as f64 * layout.layers();
         let alone = outline.regions.len() == 1;
+        let mut notes = if each > 1.0 { vec![format!("{each} of these make the mechanism.")] } else { Vec::new() };
+        // The load node of a mirrored half has a block unless both halves meet in it.
+        let meets = layout.mirror.is_some() && !self.solids.iter().any(|s| s.node == design.load_node);
+        if meets {
+            notes.push(format!(
+                "Both halves meet at `{}`, where the load is put on: there is no block.",
+                design.node_names[design.load_node]
+            ));
+        }
         let named = |index: usize| if alone { "part".to_owned() } else { format!("part-{}", index + 1) };
+        notes.extend(self.long_fillets());
+        let material = design.beam_materials.first().and_then(|m| design.materials.get(*m));
         let all = outline.regions.iter().enumerate().map(|(index, region)| Part {
             name: named(index),
             title: design.title.clone(),
-            material: design.beam_materials.first().and_then(|m| design.materials.get(*m)).map(|m| m.origin.clone()),
+            material: material.map(|m| m.origin.clone()),
+            density_kg_per_m3: material.and_then(|m| m.density_kg_per_m3),
             depth_m,
             outline: region.outer.profile.clone(),
             cutouts: region.windows.iter().map(|w| w.profile.clone()).collect(),
             holes: holes.iter().filter(|h| region.outer.profile.contains(h.centre_m)).cloned().collect(),
-            notes: if each > 1.0 { vec![format!("{each} of these make the mechanism.")] } else { Vec::new() },
+            fillets: fillets(region),
+            notes: notes.clone(),
         });
         all.collect()
+    }
+
+    /// The largest radius below a given one with which the fillets of all joints fit, m, to three digits; `None` if none does.
+    fn largest_fillet_m(&self, radius_m: f64) -> Option<f64> {
+        let fits = |m: f64| self.network_with(m).outline(TOLERANCE_M).is_ok();
+        let (mut fitting, mut too_large) = (0.0, radius_m);
+        while too_large - fitting > 1e-3 * too_large && too_large > 1e-3 * radius_m {
+            let middle = f64::midpoint(fitting, too_large);
+            if fits(middle) { fitting = middle } else { too_large = middle }
+        }
+        (fitting > 0.0).then_some(rounded_down(fitting, 3))
     }
 
     /// An error of the outline with the names of the project.
@@ -342,6 +437,9 @@ impl<'a> Drawing<'a> {
                     format!("between `{}` and `{}`", self.beam(*a), self.beam(*b))
                 };
                 message = format!("a fillet of radius {} does not fit {beams} at `{}`; {fits}", show(*radius_m), self.joint(joint));
+                if let Some(all_m) = self.largest_fillet_m(*radius_m) {
+                    message = format!("{message}, and all joints take {}", show(all_m));
+                }
                 help = "set `parts.fillet`, take a smaller cutter, or let the beams meet at a larger angle";
             }
             OutlineError::Overlap { tags: [a, b], at_m } => {
@@ -362,11 +460,8 @@ impl<'a> Drawing<'a> {
             OutlineError::NotSimple => "beams cross over each other".clone_into(&mut message),
             OutlineError::Strip { strip, what } => message = format!("beam `{}`: {what}", self.beam(*strip)),
             OutlineError::Block { block } => {
-                message = format!(
-                    "the pad or block `{}` has no area: its node lies on the mirror line, which its pad would have to cross",
-                    self.joint(&Joint::Block(*block))
-                );
-                help = "move the load node beside the mirror line, or draw the whole mechanism without `layout.mirror`";
+                message = format!("the pad or block `{}` has no area", self.joint(&Joint::Block(*block)));
+                help = "move its nodes apart, or make `parts.pad` larger";
             }
             _ => {}
         }
@@ -463,8 +558,31 @@ fn one_piece(design: &Design) -> Result<(), NoPart> {
     Ok(())
 }
 
+/// Half way between the two faces of a narrow place, m.
+fn middle(narrow: &Narrow) -> [f64; 2] {
+    [0, 1].map(|k| f64::midpoint(narrow.at_m[0][k], narrow.at_m[1][k]))
+}
+
+/// The arcs of a piece of material that are fillets.
+fn fillets(region: &Region) -> Option<Fillets> {
+    let mut found: Option<Fillets> = None;
+    for boundary in std::iter::once(&region.outer).chain(&region.windows) {
+        let mut from = boundary.profile.start_m;
+        for (segment, tag) in boundary.profile.segments.iter().zip(&boundary.tags) {
+            if let (Segment::Arc { centre_m, .. }, Tag::Fillet { .. }) = (segment, tag) {
+                let radius_m = maths::hypot(from[0] - centre_m[0], from[1] - centre_m[1]);
+                let so_far = found.unwrap_or(Fillets { count: 0, radius_m: [f64::INFINITY, 0.0] });
+                let [least, most] = so_far.radius_m;
+                found = Some(Fillets { count: so_far.count + 1, radius_m: [least.min(radius_m), most.max(radius_m)] });
+            }
+            from = segment.end_m();
+        }
+    }
+    found
+}
+
 /// COMP011 and COMP012: what the process leaves standing, and what it can cut out.
-fn checks(design: &Design, profiles: &[Profile]) -> Vec<Check> {
+fn checks(design: &Design, [wall, gap]: [Option<Narrow>; 2]) -> Vec<Check> {
     let making = &design.making;
     let gap_min_m = making.gap_min_m.or(making.cutter_m);
     let one = |code, name: &str, what: &str, found: Option<Narrow>, limit: Option<f64>, fix: &str, missing: &str| {
@@ -473,7 +591,7 @@ fn checks(design: &Design, profiles: &[Profile]) -> Vec<Check> {
         let at = found.map_or_else(String::new, |n| {
             // Rounding is nothing to show.
             let whole = |m: f64| if m.abs() < 1e-9 { 0.0 } else { m };
-            let [x, y] = [0, 1].map(|k| format_si(whole(f64::midpoint(n.at_m[0][k], n.at_m[1][k])), &design.units.length, 4));
+            let [x, y] = middle(&n).map(|m| format_si(whole(m), &design.units.length, 4));
             format!(" (at {x}, {y})")
         });
         let state = match (value, limit) {
@@ -506,7 +624,7 @@ fn checks(design: &Design, profiles: &[Profile]) -> Vec<Check> {
             "COMP011",
             "wall",
             "Thinnest wall",
-            thinnest_wall(profiles),
+            wall,
             making.wall_min_m,
             "make the beam there thicker, or the hole smaller",
             "give `process.wall_min`, the thinnest wall that the process leaves",
@@ -515,7 +633,7 @@ fn checks(design: &Design, profiles: &[Profile]) -> Vec<Check> {
             "COMP012",
             "gap",
             "Narrowest gap",
-            narrowest_gap(profiles),
+            gap,
             gap_min_m,
             "move the nodes or pads apart there, or take a smaller cutter",
             "give `process.cutter_diameter` or `process.gap_min`, the narrowest gap that the process cuts",

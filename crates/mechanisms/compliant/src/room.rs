@@ -74,7 +74,7 @@ pub(crate) fn gap_around_m(design: &Design, behaviour: &Behaviour) -> Option<f64
 
 /// The smallest distance of the beams, with their thickness, to the sides of an envelope from rest to the end of the path.
 ///
-/// Only the drawn network is looked at; its mirror image stays in the mirrored envelope. As for the clearance, a beam is all that is within
+/// Only the drawn network is looked at: the envelope of [`crate::Requirements`] is the one in which its copies are in theirs. As for the clearance, a beam is all that is within
 /// half its thickness of its axis: its ends are round, and one that ends on a side sticks out by half its thickness.
 pub fn margin(behaviour: &Behaviour, envelope: &Envelope) -> Option<Margin> {
     let of = |point: &Point| {

@@ -2,7 +2,7 @@
 
 use forcewright_base::maths;
 use forcewright_base::units::format_si;
-use forcewright_beam::{Beam, BeamState, Drive, Image, Point, Rotation, Support};
+use forcewright_beam::{Beam, BeamState, Drive, Image, Joint, Point, Rotation, Support};
 use forcewright_model::{ColourScale, Item, Role, Scene, SupportKind};
 
 use crate::analysis::{Behaviour, Measured};
@@ -25,7 +25,8 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured)
         artist.beams(&mut items, Some(point));
         artist.bodies(&mut items, Some(point));
     }
-    artist.supports(&mut items);
+    artist.supports(&mut items, last);
+    artist.hinges(&mut items, last);
     artist.labels(&mut items);
     if let Some(point) = last {
         artist.load(&mut items, behaviour, point);
@@ -33,6 +34,7 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, measured: &Measured)
         artist.peak(&mut items, measured, (point, behaviour.delta_m(point)));
         artist.nearest(&mut items, measured, behaviour.delta_m(point));
     }
+    artist.planes(&mut items);
     let largest = last.and_then(Point::peak_stress).map_or(0.0, |(_, peak)| peak.stress_pa);
     let limit = design.common_allowable_pa().map(|pa| (pa, "allowed".to_owned()));
     let scale_end = limit.as_ref().map_or(largest, |(pa, _)| largest.max(*pa));
@@ -268,7 +270,14 @@ impl Artist<'_> {
         guided && (self.design.layout.mirror.is_some() || self.design.layout.repeats())
     }
 
-    fn supports(&self, items: &mut Vec<Item>) {
+    /// Where a node of the network is, m: moved, if there is a state.
+    fn place_m(&self, node: usize, state: Option<&Point>) -> [f64; 2] {
+        let [x, y] = self.design.network.nodes[node].position_m;
+        state.map_or([x, y], |s| [x + s.nodes[node].displacement_m[0], y + s.nodes[node].displacement_m[1]])
+    }
+
+    /// Support symbols; what slides is where it has come to.
+    fn supports(&self, items: &mut Vec<Item>, state: Option<&Point>) {
         // Of the layers behind the first, the block of the one before is the ground.
         let copies: Vec<Image> = self.design.layout.images().into_iter().skip(1).collect();
         for (index, node) in self.design.network.nodes.iter().enumerate() {
@@ -282,16 +291,89 @@ impl Artist<'_> {
                 Support::Parallel => SupportKind::Parallel,
                 Support::Slider { direction, rotation } => SupportKind::Slider { direction, rotates: rotation == Rotation::Free },
             };
-            let outward = self.outward(index);
-            items.push(Item::Support { at: node.position_m, kind, outward });
+            let (at, outward) = (self.place_m(index, state), self.outward(index));
+            items.push(Item::Support { at, kind, outward });
             for image in &copies {
                 let kind = match kind {
                     SupportKind::Slider { direction, rotates } => SupportKind::Slider { direction: turned(image, direction), rotates },
                     other => other,
                 };
-                items.push(Item::Support { at: image.of(node.position_m), kind, outward: turned(image, outward) });
+                items.push(Item::Support { at: image.of(at), kind, outward: turned(image, outward) });
             }
         }
+    }
+
+    /// Hinges at the ends of beams, but for those on a pin, whose symbol says so.
+    fn hinges(&self, items: &mut Vec<Item>, state: Option<&Point>) {
+        let beams = self.design.network.beams.iter().flat_map(|b| [(b.start, b.start_joint), (b.end, b.end_joint)]);
+        let mut nodes: Vec<usize> = beams.filter(|(_, joint)| *joint == Joint::Hinged).map(|(node, _)| node).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let turns =
+            |n: &usize| matches!(self.design.network.nodes[*n].support, Support::Pinned | Support::Slider { rotation: Rotation::Free, .. });
+        for node in nodes.into_iter().filter(|n| !turns(n)) {
+            let at = self.place_m(node, state);
+            items.extend(self.copies(state).iter().map(|image| Item::Hinge { at: image.of(at) }));
+            items.push(Item::Hinge { at });
+        }
+    }
+
+    /// Planes that the picture does not show, since it looks at one of them: around an axis, or plates behind each other. They are drawn
+    /// beside it as they are seen along the load, smaller.
+    fn planes(&self, items: &mut Vec<Item>) {
+        let layout = &self.design.layout;
+        if layout.circle.is_none() && layout.plates == 1 {
+            return;
+        }
+        let points = || items.iter().flat_map(|i| if let Item::Line { points, .. } = i { points.as_slice() } else { &[] });
+        let bound = |k: usize, f: fn(f64, f64) -> f64, start: f64| points().map(|p| p[k]).fold(start, f);
+        let right_m = bound(0, f64::max, f64::NEG_INFINITY);
+        let middle_m = f64::midpoint(bound(1, f64::min, f64::INFINITY), bound(1, f64::max, f64::NEG_INFINITY));
+        let outlines = self.seen_along();
+        let reach_m = outlines.iter().flatten().map(|p| maths::hypot(p[0], p[1])).fold(f64::MIN_POSITIVE, f64::max);
+        let scale = (0.3 * self.size_m / reach_m).min(1.0);
+        let centre = [right_m + 0.45 * self.size_m, middle_m];
+        let place = |p: &[f64; 2]| [centre[0] + scale * p[0], centre[1] + scale * p[1]];
+        for (index, corners) in outlines.iter().enumerate() {
+            let role = if index == 0 { Role::Plane } else { Role::PlaneCopy };
+            items.push(Item::Body { corners: corners.iter().map(place).collect(), role });
+        }
+        let below = [centre[0], centre[1] - scale * reach_m - 0.03 * self.size_m];
+        items.push(Item::Label { at: below, text: format!("seen along the load: {} planes", outlines.len()) });
+    }
+
+    /// Every plate of a layer seen along the load, around the axis or the middle of the plates, the drawn one first.
+    fn seen_along(&self) -> Vec<Vec<[f64; 2]>> {
+        let layout = &self.design.layout;
+        let beams = &self.design.network.beams;
+        let depth_m = beams.iter().map(|b| b.section.depth_m).fold(0.0, f64::max);
+        let d = self.design.direction;
+        let (origin, outward) = layout.circle.map_or(([0.0; 2], [-d[1], d[0]]), |c| (c.axis_m, c.outward));
+        let images = layout.images();
+        let ends = beams.iter().flat_map(|b| {
+            let start = self.design.start_m(b);
+            (0..SAMPLES).map(move |i| axis_point(None, b, start, i as f64 / (SAMPLES - 1) as f64))
+        });
+        let off = |p: [f64; 2]| (p[0] - origin[0]) * outward[0] + (p[1] - origin[1]) * outward[1];
+        let all: Vec<f64> = ends.flat_map(|p| images.iter().map(move |i| i.of(p))).map(off).collect();
+        let (mut low, mut high) =
+            (all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+        if layout.circle.is_none() {
+            (low, high) = (0.5 * (low - high), 0.5 * (high - low));
+        }
+        let around = layout.circle.map_or(1, |c| c.count);
+        let mut outlines = Vec::new();
+        for leg in 0..around {
+            let (sin, cos) = maths::sin_cos(std::f64::consts::TAU * f64::from(leg) / f64::from(around));
+            for plate in 0..layout.plates {
+                // Plates stand behind each other with some air between them.
+                let at = 1.3 * depth_m * (f64::from(plate) - 0.5 * f64::from(layout.plates - 1));
+                let corners =
+                    [[low, at - 0.5 * depth_m], [high, at - 0.5 * depth_m], [high, at + 0.5 * depth_m], [low, at + 0.5 * depth_m]];
+                outlines.push(corners.map(|[x, y]| [cos * x - sin * y, sin * x + cos * y]).to_vec());
+            }
+        }
+        outlines
     }
 
     fn mirror_line(&self, items: &mut Vec<Item>) {
@@ -306,9 +388,10 @@ impl Artist<'_> {
         items.push(Item::Line { points: vec![at(-back), at(ahead)], width_m: 0.0, role: Role::Construction, values: None });
     }
 
-    /// The rigid blocks that join the copies at the moved node, one per layer.
+    /// The rigid blocks that join the copies at the moved node, one per layer. A copy that no other one in the plane faces has nothing to
+    /// be joined with there.
     fn block(&self, items: &mut Vec<Item>, point: &Point) {
-        if !self.has_block() {
+        if !self.has_block() || (self.design.layout.images().len() == 1 && self.design.layout.layers == 1) {
             return;
         }
         let node = self.design.load_node;
@@ -421,7 +504,7 @@ impl Artist<'_> {
     }
 
     fn envelope(&self, items: &mut Vec<Item>) {
-        let Some(envelope) = self.design.requirements.as_ref().and_then(|r| r.envelope) else { return };
+        let Some(envelope) = self.design.requirements.as_ref().and_then(|r| r.asked_envelope) else { return };
         let ([left, bottom], [right, top]) = (envelope.low_m, envelope.high_m);
         // An open side has no corner to draw.
         if [left, bottom, right, top].iter().all(|v| v.is_finite()) {

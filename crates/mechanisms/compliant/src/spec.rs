@@ -52,11 +52,12 @@ pub(crate) struct Requirements {
     pub limits: Section<Limits>,
 }
 
-/// The box that the drawn network stays in.
+/// The box that the layout, or the drawn network alone, stays in.
 #[derive(Debug, Default)]
 pub(crate) struct Envelope {
     pub x: Slot<[Quantity; 2]>,
     pub y: Slot<[Quantity; 2]>,
+    pub of: Slot<&'static str>,
 }
 
 /// A force level and how far from it the force may be.
@@ -271,6 +272,11 @@ pub(crate) const BEAM_MODELS: &[Word] = &[
     Word { word: "reissner", doc: "geometrically exact: bending, stretching and shear" },
     Word { word: "inextensible", doc: "bending only, as in the paper" },
 ];
+/// What stays in an envelope.
+pub(crate) const ENVELOPED: &[Word] = &[
+    Word { word: "layout", doc: "the drawn network with its copies in the plane: mirrored half, rows, the leg opposite around an axis" },
+    Word { word: "drawn", doc: "the drawn network alone" },
+];
 /// Models of joints.
 pub(crate) const JOINT_MODELS: &[Word] = &[
     Word { word: "point", doc: "beams meet at points" },
@@ -351,10 +357,7 @@ impl Describe for Requirements {
             .describe(v, &Param::new("stiffness", "Slope dF/dΔ over the whole travel; without this section, no negative stiffness."));
         self.envelope.describe(
             v,
-            &Param::new(
-                "envelope",
-                "Box in which the beams of the drawn network stay with their thickness, at rest and over the whole travel.",
-            ),
+            &Param::new("envelope", "Box in which the beams of the layout stay with their thickness, at rest and over the whole travel."),
         );
         self.limits.describe(v, &Param::new("limits", "Limits on any metric, by its name."));
     }
@@ -406,6 +409,7 @@ impl Describe for Envelope {
         let side = |key, doc| Param::new(key, doc).of(Dimension::Length).within(-LARGEST_M, LARGEST_M);
         v.point(&side("x", "From left to right, two values of x; without it any x."), &mut self.x);
         v.point(&side("y", "From bottom to top, two values of y; without it any y."), &mut self.y);
+        v.choice(&Param::new("of", "What stays in it.").default("layout"), ENVELOPED, &mut self.of);
     }
 }
 

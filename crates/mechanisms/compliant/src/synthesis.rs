@@ -10,9 +10,9 @@ pub(crate) use section::Synthesise;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::maths;
-use forcewright_base::units::Unit;
+use forcewright_base::units::{Dimension, Quantity, Unit};
 use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser};
-use forcewright_model::{Outcome, StatusKind};
+use forcewright_model::{Outcome, ParameterRow, StatusKind};
 
 use crate::design::{Design, StressLimit, si};
 use crate::spec::Spec;
@@ -240,6 +240,15 @@ impl Synthesiser for Synthesis {
         let next = self.resized(&size, outcome).filter(|_| round < ROUNDS);
         let next = next.and_then(|size| write::proposal(&self.asked, &size, &self.length, round + 1.0));
         next.map_or(Judgement::Keep, |next| Judgement::Correct(Box::new(next)))
+    }
+
+    fn searched(&self, proposal: &Proposal, parameters: &[ParameterRow]) -> Proposal {
+        let value = |path: &str| {
+            let row = parameters.iter().find(|p| p.path == path)?;
+            Quantity::parse(&row.value, Dimension::Length).ok().map(|q| q.si)
+        };
+        let found = ["design.thickness", "design.depth"].map(value);
+        write::searched(proposal, found, &self.length).unwrap_or_else(|| proposal.clone())
     }
 
     fn alike(&self, a: &Proposal, b: &Proposal) -> bool {

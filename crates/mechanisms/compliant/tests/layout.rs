@@ -5,6 +5,9 @@ mod common;
 use common::{Solved, close, design, near, outcome, solve, understand};
 use forcewright_base::maths;
 use forcewright_beam::Status;
+use forcewright_compliant::Compliant;
+use forcewright_contract::family::Mechanism;
+use forcewright_model::{FigureContent, Item, Role, SupportKind};
 
 /// A bent leg from a clamp to a block that moves down; its force has a maximum after which it falls.
 const LEG: &str = r#"
@@ -179,4 +182,38 @@ fn what_is_written_once_is_the_same_as_nothing() {
     let once = solve(&laid_out("plates = 1\nseries = 1", "6 mm"), &[]);
     assert_eq!(plain.get("force_at_end").to_bits(), once.get("force_at_end").to_bits());
     assert!(matches!(plain.behaviour.path.status, Status::Complete));
+}
+
+/// What the picture does not look at is drawn beside it: every plane, seen along the load, at equal angles. The block's slider is where it
+/// has come to.
+#[test]
+fn planes_are_seen_along_the_load() {
+    let items = |layout: &str| {
+        let design = design(&laid_out(layout, "6 mm"), &[]);
+        let figures = Compliant::analyse(&design, &mut |_| true).figures;
+        let scene = figures.into_iter().find_map(|f| if let FigureContent::Scene(scene) = f.content { Some(scene) } else { None });
+        scene.expect("a picture").items
+    };
+    let planes = |layout: &str| {
+        let middle = |corners: &[[f64; 2]]| [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / corners.len() as f64);
+        let of = |item: &Item| match item {
+            Item::Body { corners, role: Role::Plane | Role::PlaneCopy } => Some(middle(corners)),
+            _ => None,
+        };
+        items(layout).iter().filter_map(of).collect::<Vec<_>>()
+    };
+    assert!(planes("").is_empty() && planes("array = { count = 2, spacing = \"40 mm\" }").is_empty());
+    assert_eq!(planes("plates = 3").len(), 3);
+    assert_eq!(planes("plates = 2\ncircular = { count = 4, radius = \"5 mm\" }").len(), 8);
+    let five = planes("circular = { count = 5, radius = \"5 mm\" }");
+    assert_eq!(five.len(), 5);
+    let centre = [0, 1].map(|k| five.iter().map(|p| p[k]).sum::<f64>() / 5.0);
+    let away = |p: &[f64; 2]| maths::hypot(p[0] - centre[0], p[1] - centre[1]);
+    assert!(five.iter().all(|p| (away(p) / away(&five[0]) - 1.0).abs() < 1e-9) && away(&five[0]) > 1e-3);
+    let block = items("").iter().find_map(|i| match i {
+        Item::Support { at, kind: SupportKind::Slider { .. }, .. } => Some(*at),
+        _ => None,
+    });
+    let at = block.expect("a slider");
+    assert!(at[0].abs() < 1e-12 && (at[1] - 14e-3).abs() < 1e-9, "{at:?}");
 }

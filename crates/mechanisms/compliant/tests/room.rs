@@ -117,7 +117,7 @@ fn the_check_and_the_picture() {
             .items
             .iter()
             .any(|i| matches!(i, Item::Line { points, role: Role::Envelope, .. } if points.len() == 5 && (points[2][0] - 0.2).abs() + (points[2][1] - 9e-3).abs() < 1e-12)),
-        FigureContent::Plot(_) => false,
+        FigureContent::Plot(_) | FigureContent::Part(_) => false,
     });
     assert!(drawn, "the envelope is in the picture");
 }
@@ -135,4 +135,45 @@ fn what_is_wrong_with_an_envelope() {
         let (design, diagnostics) = understand(&boxed(envelope, "1 mm"), &[]);
         assert!(design.is_none() && diagnostics.in_file_order().iter().any(|d| d.code == code), "{envelope}: {diagnostics:?}");
     }
+}
+
+/// Copies in the plane are in the box as well: a leg from x = 0 to 100 mm, mirrored at x = 110 mm (120 mm to 220 mm), in rows above each
+/// other, or with one opposite to it around an axis.
+#[test]
+fn an_envelope_holds_the_copies_in_the_plane() {
+    let guided = |layout: &str, envelope: &str| {
+        let mut drawing = Drawing::straight("", [0.0, -1.0], "1 mm", "reissner");
+        drawing.nodes[1].2 = "support = \"slider\", direction = [0, 1]".to_owned();
+        drawing.text().replace("[material]", &format!("[requirements.envelope]\n{envelope}\n[material]")) + layout
+    };
+    let margin = |layout: &str, envelope: &str| solve(&guided(layout, envelope), &[]).get("envelope_margin");
+    let mirrored = "\n[layout]\nmirror = \"x = 110 mm\"\n";
+    close(margin(mirrored, "x = [\"-7 mm\", \"230 mm\"]"), 6.5e-3, 1e-12, "the drawn half");
+    close(margin(mirrored, "x = [\"-20 mm\", \"223 mm\"]"), 3e-3 - 0.5e-3, 1e-12, "the mirrored half ends at 220 mm");
+    close(margin(mirrored, "of = \"drawn\"\nx = [\"-20 mm\", \"103 mm\"]"), 2.5e-3, 1e-9, "the drawn network alone");
+    let rows = "\n[layout]\narray = { count = 3, spacing = \"20 mm\", direction = [0, 1] }\n";
+    close(margin(rows, "y = [\"-30 mm\", \"44 mm\"]"), 3.5e-3, 1e-12, "the last of three rows");
+    let around = |count: u32| format!("\n[layout]\ncircular = {{ count = {count}, radius = \"10 mm\" }}\n");
+    close(margin(&around(4), "x = [\"-7 mm\", \"224 mm\"]"), 3.5e-3, 1e-12, "the leg opposite ends at 220 mm");
+    close(margin(&around(3), "x = [\"-7 mm\", \"150 mm\"]"), 6.5e-3, 1e-12, "none is opposite");
+}
+
+/// A stage that comes down by its travel onto a post: what is left is the gap at rest less the travel, less half of both pads. Pads that
+/// nobody has drawn are only spoken of where they are in the way.
+#[test]
+fn a_block_that_reaches_a_pad_is_seen() {
+    let text = include_str!("../../../../examples/compliant/constant-force-pair.toml");
+    let pads = |set: &[&str]| outcome(text, set).checks.into_iter().find(|c| c.code == "COMP013");
+    for (pad_mm, travel_mm) in [(5.0, 5.5), (5.0, 4.0), (6.4, 5.5), (6.6, 5.5), (5.0, 7.5)] {
+        let (pad, travel) = (format!("parts.pad=[\"{pad_mm} mm\", \"5 mm\"]"), format!("load.travel={travel_mm} mm"));
+        let found = pads(&[&pad, &travel]).expect("pads are drawn");
+        let left_m = 1e-3 * (12.0 - pad_mm - travel_mm);
+        close(found.value.unwrap(), left_m, 1e-9, &format!("{pad} {travel}"));
+        assert_eq!((found.required, found.state), (true, if left_m > 0.0 { CheckState::Met } else { CheckState::Missed }));
+        assert!(found.title.contains("stage") && found.title.contains("post"), "{}", found.title);
+    }
+    let without = text.replace("[parts]", "[parts]\n#").replace("\npad", "\n#");
+    let usual = outcome(&without, &[]).checks.into_iter().find(|c| c.code == "COMP013").expect("12.18 mm high pads meet");
+    assert!(!usual.required && usual.state == CheckState::Missed, "{usual:?}");
+    assert!(outcome(NODES, &[]).checks.iter().all(|c| c.code != "COMP013"), "nothing is in the way");
 }

@@ -267,7 +267,7 @@ fn figures(report: &Report) -> String {
 pub(crate) fn figure(number: usize, figure: &Figure) -> String {
     let (class, data) = match &figure.content {
         FigureContent::Plot(plot) => ("plot", data_table(number, plot)),
-        FigureContent::Scene(_) => ("scene", String::new()),
+        FigureContent::Scene(_) | FigureContent::Part(_) => ("scene", String::new()),
     };
     format!(
         "<figure id=\"figure-{}\" class=\"{class}\">\n{}<figcaption><strong>Figure {number}. {}.</strong> {}</figcaption>\n{data}</figure>\n",

@@ -244,6 +244,7 @@ fn text_from_files_never_becomes_markup() {
                 plot.markers[0].note = String::from(nasty);
             }
             FigureContent::Scene(scene) => scene.description = nasty.to_owned(),
+            FigureContent::Part(set) => set.parts[0].name = nasty.to_owned(),
         }
     }
     let page = html::page(&report);

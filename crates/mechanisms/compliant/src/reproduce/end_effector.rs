@@ -1,18 +1,24 @@
 //! Table 4: the end-effector's mechanism, eight legs that share the load.
 
-use forcewright_base::roots;
+use std::f64::consts::PI;
+
+use forcewright_base::{maths, roots};
 use forcewright_beam::Shape;
 
 use super::{Solved, solve};
 use crate::analysis::{Behaviour, measure};
+use crate::scenario::{Join, Profile, Surface, SurfaceRun, TipPath};
 
 const LEG: &str = include_str!("../../../../../reference/lan2010-table4.toml");
 /// Two sub-mechanisms of four legs, section IV.
 const LEGS: f64 = 8.0;
 /// Least and largest force measured along the cam, N; section IV.
 const MEASURED_N: [f64; 2] = [8.0, 8.59];
-/// Height of the cam, m; section IV.
+/// Height of the cam and the way of the stage over its rise, m; section IV. Its shape is not printed: a raised cosine.
 const HEIGHT_M: f64 = 5e-3;
+const WAY_M: f64 = 12.3e-3;
+/// A cam that these legs follow within the measured forces, and the displacement at its foot, m.
+const LOW_M: [f64; 2] = [3.2e-3, 1.82e-3];
 /// Nodes as printed in Table 4, m.
 const PRINTED_M: [[f64; 2]; 4] = [[10e-3, 2e-3], [9.9e-3, 5.5e-3], [1.5e-3, 6.4e-3], [0.0, 10e-3]];
 
@@ -48,6 +54,9 @@ impl EndEffector {
             "window_end" => mm * self.window()[1],
             "window" => mm * (self.window()[1] - self.window()[0]),
             "window_nodes" => mm * window(&self.nodes).map_or(f64::NAN, |[from, to]| to - from),
+            "contact_min" => self.contact_n(HEIGHT_M, 0.0)[0],
+            "contact_low_min" => self.contact_n(LOW_M[0], LOW_M[1])[0],
+            "contact_low_max" => self.contact_n(LOW_M[0], LOW_M[1])[1],
             "stress" => mpa * stress,
             "safety" => self.shapes.design.yield_pa(0).map_or(f64::NAN, |yield_pa| yield_pa / stress),
             _ => self.numbered(id),
@@ -65,6 +74,23 @@ impl EndEffector {
             }
             _ => f64::NAN,
         }
+    }
+
+    /// Least and largest contact force of eight legs without friction over the rise of a cam whose foot is at a displacement, N.
+    fn contact_n(&self, height_m: f64, preload_m: f64) -> [f64; 2] {
+        let part = |i: u32| f64::from(i) / 40.0;
+        let way = (0..=40).map(|i| WAY_M * part(i)).collect();
+        let heights = (0..=40).map(|i| 0.5 * height_m * (1.0 - maths::cos(PI * part(i)))).collect();
+        let surface = Surface {
+            path: TipPath::new(Profile::new(way, heights, Join::Smooth), 0.0),
+            preload_m,
+            guide_friction: 0.0,
+            guide_load: 1.0,
+            tip_friction: 0.0,
+            there_and_back: false,
+        };
+        let run = self.shapes.behaviour.curve.as_ref().map(|curve| SurfaceRun::of(&surface, curve, curve.end()));
+        run.and_then(|run| run.axial_n()).map_or([f64::NAN; 2], |range| range.map(|f| LEGS * f))
     }
 
     fn window(&self) -> [f64; 2] {

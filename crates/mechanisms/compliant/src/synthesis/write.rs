@@ -33,23 +33,38 @@ pub(super) fn proposal(asked: &Asked, size: &Size, length: &Unit, round: f64) ->
         ..*size
     };
     let travel_m = size.scale * stop.travel_m;
-    let room = stop.room_m().map(|side| side * size.scale + size.thickness_m);
-    let show = |si: f64| format_si(si, length, 4);
     Some(Proposal {
         topology: shape.topology.name,
         title: shape.title.clone(),
         sections: sections(asked, shape, &size, travel_m)?,
         settings: if asked.room_m[0].is_finite() { envelope(asked, stop, &size) } else { Vec::new() },
-        sizes: vec![
-            ("Room", format!("{} × {}", show(room[0]), show(room[1]))),
-            ("Thickness", show(size.thickness_m)),
-            ("Depth", if size.plates > 1 { format!("{} × {}", size.plates, show(size.depth_m)) } else { show(size.depth_m) }),
-            ("Travel", show(travel_m)),
-        ],
+        sizes: told(stop, &size, length),
         state: state(&size, round),
         cost: size.cost_m3,
         parts: shape.beams,
     })
+}
+
+/// The sizes for people. Of a design that a search has gone on from the room is that before it, as its nodes moved little, with the new
+/// thickness.
+fn told(stop: &Stop, size: &Size, length: &Unit) -> Vec<(&'static str, String)> {
+    let room = stop.room_m().map(|side| side * size.scale + size.thickness_m);
+    let show = |si: f64| format_si(si, length, 4);
+    vec![
+        ("Room", format!("{} × {}", show(room[0]), show(room[1]))),
+        ("Thickness", show(size.thickness_m)),
+        ("Depth", if size.plates > 1 { format!("{} × {}", size.plates, show(size.depth_m)) } else { show(size.depth_m) }),
+        ("Travel", show(size.scale * stop.travel_m)),
+    ]
+}
+
+/// A proposal after a search that may have changed thickness and depth, m.
+pub(super) fn searched(proposal: &Proposal, [thickness_m, depth_m]: [Option<f64>; 2], length: &Unit) -> Option<Proposal> {
+    let (old, round) = read(&proposal.state)?;
+    let (thickness_m, depth_m) = (thickness_m.unwrap_or(old.thickness_m), depth_m.unwrap_or(old.depth_m));
+    let size = Size { thickness_m, depth_m, cost_m3: old.cost_m3 * depth_m / old.depth_m, ..old };
+    let stop = catalogue::solved(size.shape)?.stops.get(size.stop)?;
+    Some(Proposal { sizes: told(stop, &size, length), state: state(&size, round), cost: size.cost_m3, ..proposal.clone() })
 }
 
 /// A size as the numbers of a proposal.
@@ -105,12 +120,15 @@ fn search(asked: &Asked, shape: &Solved, size: &Size) -> String {
         return String::new();
     }
     let mm = |si: f64| format!("\"{} mm\"", format_number(1e3 * si, 7));
-    let range =
-        |si: f64, most: f64| format!("{{ range = [{}, {}] }}", mm((1.0 - SECTION) * si), mm(((1.0 + SECTION) * si).min(most).max(si)));
+    // Around what was sized, and within what can be made.
+    let range = |si: f64, [least, most]: [f64; 2]| {
+        let ends = [((1.0 - SECTION) * si).max(least).min(si), ((1.0 + SECTION) * si).min(most).max(si)];
+        format!("{{ range = [{}, {}] }}", mm(ends[0]), mm(ends[1]))
+    };
     let mut text = format!(
         "\n[optimise]\nobjective = {{ maximise = \"flat_ratio\" }}\n[optimise.variables]\n\"design.thickness\" = {}\n\"design.depth\" = {}\n\"design.beams.*.bend\" = {{ within = {BENDS} }}\n",
-        range(size.thickness_m, f64::INFINITY),
-        range(size.depth_m, asked.depth_max_m),
+        range(size.thickness_m, [asked.thickness_min_m, f64::INFINITY]),
+        range(size.depth_m, [asked.depth_min_m.unwrap_or(0.0), asked.depth_max_m]),
     );
     let largest = shape.stops.last().map_or(0.0, |s| s.room_m().into_iter().fold(0.0, f64::max));
     for node in free_nodes(shape.topology.text) {

@@ -65,10 +65,12 @@ pub fn part(name: &str, depth_m: f64, outline: Profile) -> Part {
         name: name.to_owned(),
         title: format!("Sample {name}"),
         material: None,
+        density_kg_per_m3: None,
         depth_m,
         outline,
         cutouts: Vec::new(),
         holes: Vec::new(),
+        fillets: None,
         notes: Vec::new(),
     }
 }

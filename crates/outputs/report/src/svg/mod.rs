@@ -4,6 +4,7 @@
 mod canvas;
 mod colour;
 mod legend;
+mod part;
 mod place;
 mod plot;
 mod scene;
@@ -49,6 +50,7 @@ pub fn draw_figure(figure: &Figure) -> Drawing {
     match &figure.content {
         FigureContent::Plot(p) => plot::draw(p, PlotSize::default(), &figure.title, &figure.caption),
         FigureContent::Scene(s) => scene::draw(s, SceneSize::default(), &figure.title, &figure.caption),
+        FigureContent::Part(p) => part::draw(p, SceneSize::default(), &figure.title, &figure.caption),
     }
 }
 

@@ -96,7 +96,7 @@ fn points(item: &Item) -> &[[f64; 2]] {
     match item {
         Item::Line { points, .. } => points,
         Item::Body { corners, .. } => corners,
-        Item::Support { at, .. } | Item::Label { at, .. } | Item::Marker { at, .. } => std::slice::from_ref(at),
+        Item::Support { at, .. } | Item::Hinge { at } | Item::Label { at, .. } | Item::Marker { at, .. } => std::slice::from_ref(at),
         Item::Arrow { .. } => &[],
     }
 }
@@ -130,7 +130,7 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
                 Role::Undeformed => placer.add_line(&at, 1.5, 0.6),
                 Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy => placer.add_line(&at, width, 1.0),
                 Role::UndeformedCopy => placer.add_line(&at, 1.5, 0.5),
-                Role::Construction | Role::Envelope => placer.add_line(&at, 1.0, 0.3),
+                Role::Construction | Role::Envelope | Role::Plane | Role::PlaneCopy => placer.add_line(&at, 1.0, 0.3),
             }
             plain(canvas, &at, width, *role);
         }
@@ -140,6 +140,8 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
                 Role::Deformed | Role::DeformedCopy => {
                     canvas.polygon(&at, &format!(r#"{} stroke-width="1.4""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)));
                 }
+                Role::Plane => canvas.polygon(&at, &format!(r#"{} stroke-width="1""#, Paint::fill_and_stroke(Paint::Main, Paint::Ink))),
+                Role::PlaneCopy => canvas.polygon(&at, &format!(r#"{} stroke-width="1""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink))),
                 _ => canvas.polygon(&at, &format!(r#"fill="none" {}"#, outline(*role))),
             }
             if matches!(role, Role::Deformed | Role::DeformedCopy) && !at.is_empty() {
@@ -153,6 +155,12 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
         Item::Support { at, kind, outward } => {
             if let Some(p) = view.at(*at) {
                 placer.add_solid(symbols::support(canvas, p, *kind, *outward, symbol));
+            }
+        }
+        Item::Hinge { at } => {
+            if let Some(p) = view.at(*at) {
+                symbols::hinge(canvas, p, symbol);
+                placer.add_solid(Rect::sized(p[0] - 0.4 * symbol, p[1] - 0.4 * symbol, 0.8 * symbol, 0.8 * symbol));
             }
         }
         Item::Arrow { from, to, .. } => {
@@ -178,6 +186,7 @@ fn outline(role: Role) -> String {
         Role::UndeformedCopy => (Paint::Reference, 1.0, "2.5 3.5"),
         Role::Construction => (Paint::Muted, 1.0, "14 4 2 4"),
         Role::Envelope => (Paint::Limit, 1.2, "9 3"),
+        Role::Plane | Role::PlaneCopy => (Paint::Ink, 1.0, ""),
         Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy => (Paint::Ink, 1.4, ""),
     };
     format!(r#"{} stroke-width="{width}" {}"#, paint.attributes("stroke"), legend::dashed(dash))
@@ -418,5 +427,7 @@ fn entries(scene: &Scene) -> Vec<Entry> {
         (Role::Envelope, line(Paint::Limit, 1.2, "9 3"), "envelope".to_owned()),
     ];
     let lines = lines.into_iter().filter(|(role, ..)| count(*role) > 0).map(|(_, swatch, text)| Entry { swatch, text });
-    lines.chain(rigid).collect()
+    let hinge = scene.items.iter().any(|i| matches!(i, Item::Hinge { .. }));
+    let hinge = hinge.then(|| Entry { swatch: Swatch::Point, text: "hinge".to_owned() });
+    lines.chain(rigid).chain(hinge).collect()
 }

@@ -132,6 +132,12 @@ pub(super) fn arrow(canvas: &mut Canvas, from: [f64; 2], to: [f64; 2]) {
     canvas.close();
 }
 
+/// Draws a hinge: a pin in its eye.
+pub(super) fn hinge(canvas: &mut Canvas, at: [f64; 2], size: f64) {
+    canvas.circle(at, 0.34 * size, &format!(r#"{} stroke-width="1.8""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)));
+    canvas.circle(at, 0.1 * size, &Paint::Ink.attributes("fill"));
+}
+
 /// Radius of a marked point, to the middle of its line.
 pub(super) const RING: f64 = 8.0;
 

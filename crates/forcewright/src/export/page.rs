@@ -1,0 +1,174 @@
+//! The parts of a design as a page for people, and as a figure of its report.
+
+use forcewright_base::units::{format_number, format_si};
+use forcewright_model::{Check, CheckState, Figure, FigureContent, Part, PartSet, Sense};
+use forcewright_report::study::{StudyColumn, StudyPage, StudyPart, StudySection, page};
+
+use super::Exported;
+use crate::{Loaded, VERSION};
+
+/// The parts as a figure.
+fn figure(set: &PartSet) -> Figure {
+    let several = set.parts.len() > 1;
+    let facts: Vec<String> = set.parts.iter().map(|part| in_words(part, several, set)).collect();
+    let (title, cut) = if several { ("The parts as they are cut", "They are cut") } else { ("The part as it is cut", "It is cut") };
+    Figure {
+        id: "part",
+        title: title.to_owned(),
+        caption: format!("{cut}, with holes and fillets; `[parts]` says how large they are. {}", facts.join(" ")),
+        content: FigureContent::Part(set.clone()),
+    }
+}
+
+/// What a maker asks first, in a sentence.
+fn in_words(part: &Part, named: bool, set: &PartSet) -> String {
+    let name = if named { format!("{}: ", part.name) } else { String::new() };
+    let facts = facts(part, set).into_iter().map(|(what, text)| format!("{what} {text}")).collect::<Vec<_>>().join(", ");
+    let mut words = if named { format!("{name}{facts}.") } else { format!("Its {facts}.") };
+    for note in &part.notes {
+        words.push(' ');
+        words.push_str(note);
+    }
+    words
+}
+
+/// Name and text of what can be measured on a plate.
+pub(super) fn facts(part: &Part, set: &PartSet) -> Vec<(&'static str, String)> {
+    let length = |m: f64| format_si(m, &set.display, 4);
+    let [width, height] = part.size_m().map(length);
+    let mut all = vec![
+        ("size", format!("{width} × {height}")),
+        ("thickness of the plate", length(part.depth_m)),
+        ("cut length", length(part.cut_length_m())),
+        ("area", format!("{} mm²", format_number(1e6 * part.area_m2(), 4))),
+    ];
+    if let Some(mass_kg) = part.mass_kg() {
+        all.push(("mass", format!("{} g", format_number(1e3 * mass_kg, 3))));
+    }
+    if let Some(fillets) = part.fillets {
+        let [least, most] = fillets.radius_m;
+        // What differs by rounding is one radius.
+        let radius = if most - least < 1e-6 * most { length(most) } else { format!("{} to {}", length(least), length(most)) };
+        all.push(("fillets", format!("{} of radius {radius}", fillets.count)));
+    }
+    all
+}
+
+impl Loaded {
+    /// The parts of the design as a figure, `None` where it has none.
+    pub fn part_figure(&self) -> Option<Figure> {
+        self.understood.parts().ok().map(|set| figure(&set))
+    }
+}
+
+impl Exported {
+    /// `part.html`: the parts with their dimensions, what the process can make of them, and the files that were written.
+    /// `input_name` is the project file as the user named it, `command` the command that repeats this run.
+    pub fn page(&self, input_name: &str, variant: Option<&str>, command: &str) -> String {
+        let set = &self.set;
+        let table = |caption: &str, columns: &[(&str, StudyColumn)], rows: Vec<Vec<String>>| StudyPart::Table {
+            caption: caption.to_owned(),
+            columns: columns.iter().map(|(title, kind)| ((*title).to_owned(), *kind)).collect(),
+            rows,
+        };
+        let mut rows = Vec::new();
+        for part in &set.parts {
+            let mut row = |what: &str, text: String| rows.push(vec![part.name.clone(), what.to_owned(), text]);
+            row("material", part.material.clone().unwrap_or_else(|| "not said".to_owned()));
+            for (what, text) in facts(part, set) {
+                row(what, text);
+            }
+            row("windows", part.cutouts.len().to_string());
+            row("holes", part.holes.len().to_string());
+            part.notes.iter().for_each(|note| row("note", note.clone()));
+        }
+        let measures = [("Part", StudyColumn::Code), ("What", StudyColumn::Text), ("Value", StudyColumn::Text)];
+        let checks = [
+            ("What", StudyColumn::Text),
+            ("State", StudyColumn::Text),
+            ("Found", StudyColumn::Number),
+            ("Limit", StudyColumn::Number),
+            ("Code", StudyColumn::Code),
+        ];
+        let files = self.files.iter().map(|(name, bytes)| vec![name.clone(), use_of(name).to_owned(), bytes.len().to_string()]);
+        let advice = set.checks.iter().filter_map(|c| Some(StudyPart::Text(format!("{}: {}", c.code, c.advice.as_ref()?))));
+        let mut made = vec![table("What the process must be able to make", &checks, set.checks.iter().map(check).collect())];
+        made.extend(advice);
+        let sheets: Vec<StudyPart> = set
+            .sheets
+            .iter()
+            .map(|sheet| StudyPart::Table {
+                caption: sheet.caption.clone(),
+                columns: sheet.columns.iter().map(|c| (c.clone(), StudyColumn::Number)).collect(),
+                rows: sheet.rows.clone(),
+            })
+            .collect();
+        page(&StudyPage {
+            kind: if set.parts.len() == 1 { "Part" } else { "Parts" }.to_owned(),
+            title: self.title.clone(),
+            facts: vec![("Project file".to_owned(), input_name.to_owned())],
+            verdict: self.verdict(),
+            sections: [
+                StudySection { id: "part", title: "As it is cut", parts: vec![StudyPart::Figure(Box::new(figure(set)))] },
+                StudySection { id: "measures", title: "Measures", parts: vec![table("Measures of the outline", &measures, rows)] },
+                StudySection { id: "process", title: "Can it be made?", parts: made },
+                StudySection { id: "sheets", title: "Sheets", parts: sheets },
+                StudySection {
+                    id: "files",
+                    title: "Files",
+                    parts: vec![table(
+                        "Files written beside this page; lengths in millimetres",
+                        &[("File", StudyColumn::Code), ("For", StudyColumn::Text), ("Bytes", StudyColumn::Number)],
+                        files.collect(),
+                    )],
+                },
+            ]
+            .into_iter()
+            .filter(|section| !section.parts.is_empty())
+            .collect(),
+            version: VERSION.to_owned(),
+            input_name: input_name.to_owned(),
+            variant: variant.map(str::to_owned),
+            input_sha256: self.input_sha256.clone(),
+            command: command.to_owned(),
+        })
+    }
+
+    /// Whether it can be made, in a sentence.
+    fn verdict(&self) -> (CheckState, String) {
+        let worst = |state| self.set.checks.iter().any(|c| c.required && c.state == state);
+        let nothing = !self.set.checks.iter().any(|c| c.required);
+        match (nothing, worst(CheckState::Missed), worst(CheckState::NotAssessed)) {
+            (_, true, _) => (CheckState::Missed, "The process cannot make it as it is drawn".to_owned()),
+            (true, ..) => (CheckState::NotAssessed, "Nothing is said of the process: `[process]` gives its limits".to_owned()),
+            (.., true) => (CheckState::NotAssessed, "Not everything that the process asks for could be assessed".to_owned()),
+            _ => (CheckState::Met, "The process can make it, as far as `[process]` asks".to_owned()),
+        }
+    }
+}
+
+fn check(check: &Check) -> Vec<String> {
+    let sign = if check.sense == Sense::AtMost { "≤" } else { "≥" };
+    let show = |value: f64| format_si(value, &check.display, 4);
+    let dash = || "–".to_owned();
+    vec![
+        check.title.clone(),
+        check.state.word().to_owned(),
+        check.value.map_or_else(dash, show),
+        check.limit.map_or_else(dash, |l| format!("{sign} {}", show(l))),
+        check.code.to_owned(),
+    ]
+}
+
+/// What a file is for, by its ending.
+fn use_of(name: &str) -> &'static str {
+    match name.rsplit('.').next().unwrap_or_default() {
+        "dxf" => "cutting: closed polylines of lines and arcs",
+        "svg" => "laser cutting, true size",
+        "step" => "solid model",
+        "stl" => "printing: mesh without units",
+        "3mf" => "printing: mesh with units",
+        "csv" => "inspection, ordering",
+        _ => "further work",
+    }
+}
