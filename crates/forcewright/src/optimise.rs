@@ -37,8 +37,9 @@ const HARDER: f64 = 2.0;
 const NEARER: f64 = 0.7;
 const MOST_IN_VAIN: usize = 2;
 /// The least by which a limit moves, relative to its scale, and a band, relative to its level: beyond what a search leaves open.
-const LEAST_MOVE: f64 = 3e-6;
-/// A requirement missed by more than this part of itself is not the doing of its own limit but of a band that was left between stations.
+const LEAST_MOVE: f64 = 1e-5;
+/// A requirement of the stretch in a band that is missed by more than this part of its scale is not the doing of its own limit but of the
+/// band, which was left between stations.
 const BEYOND: f64 = 0.01;
 /// A goal that is worse than the search says by more than this part of it.
 const FALLEN: f64 = 0.005;
@@ -130,13 +131,14 @@ fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate, tighter: f64) 
         let size = |limit: &Limit| [limit.lower, limit.upper].into_iter().filter(|b| b.is_finite()).fold(0.0_f64, |m, b| m.max(b.abs()));
         let missed = |limit: &Limit| relative.map_or(by, |part| part * size(limit));
         let own: Vec<&Limit> = task.limits.iter().filter(|limit| limit.checks.contains(&check.name.as_str())).collect();
-        for limit in own.iter().filter(|limit| missed(limit) <= BEYOND * limit.scale) {
+        let astray = |limit: &Limit| limit.in_band && missed(limit) > BEYOND * limit.scale;
+        for limit in own.iter().filter(|limit| !astray(limit)) {
             reserve.limits[limit.values.clone()].iter_mut().for_each(|r| *r += tighter * missed(limit) + LEAST_MOVE * limit.scale);
         }
         // The band's own check says by how much it is too wide; a stroke far too short, that it is.
         if check.name == "force" && by <= BEYOND {
             narrower = narrower.max(tighter * by + LEAST_MOVE);
-        } else if check.name == "force" || own.iter().any(|limit| missed(limit) > BEYOND * limit.scale) {
+        } else if check.name == "force" || own.iter().any(|limit| astray(limit)) {
             narrower = narrower.max(NARROWER);
         }
     }
@@ -287,7 +289,7 @@ impl Loaded {
         let variables = task.evaluator.variables().to_vec();
         let nominal: Vec<f64> = variables.iter().map(|v| v.nominal).collect();
         // What cannot be written is refused before the work, not after.
-        let (possible, files) = Snapshot::of(files, |files| self.with_design(files, target, &task.evaluator.numbers(&nominal)));
+        let (possible, files) = Snapshot::of(files, |files| self.rewritten(files, target, &task.evaluator.numbers(&nominal)));
         possible?;
         let files = &files;
         let before = self.solve(&self.name(), "", &mut |_| true);
@@ -385,12 +387,17 @@ impl Loaded {
         let asked = found.reserve.clone();
         let choices = Choices { variant: self.project.choices.variant.clone(), set: Vec::new() };
         let project = |text: &str| Self::from_file(&Changed { files, path: target, text }, target, &choices);
-        let (mut rounds, mut settled) = (0, false);
-        while rounds < MOST_LOOKS && !settled && !stopped.load(Ordering::Relaxed) {
-            rounds += 1;
+        let (mut rounds, mut best, mut lacking) = (0, found.clone(), f64::INFINITY);
+        loop {
             let Some(reserve) = project(&found.text)?.reserve(task, &found.run, robust, &asked)? else { break };
-            settled = reserve.rests(&found.reserve, task, AT_REST);
-            if settled {
+            rounds += 1;
+            let lacks = if found.run.feasible(NEARLY_KEPT) { reserve.lacking(&found.reserve, task) } else { f64::INFINITY };
+            // Of those that keep what their own scatter takes, the best; else the one that lacks least of it.
+            let nearer = if lacks.max(lacking) <= AT_REST { found.goal < best.goal } else { lacks < lacking };
+            if (found.met(), nearer) >= (best.met(), true) {
+                (best, lacking) = (found.clone(), lacks);
+            }
+            if rounds >= MOST_LOOKS || reserve.rests(&found.reserve, task, AT_REST) || stopped.load(Ordering::Relaxed) {
                 break;
             }
             let mut next = again(task, &Settings { reserve: reserve.clone(), ..settings.clone() }, &found.run, go_on);
@@ -401,6 +408,7 @@ impl Loaded {
             let written = self.with_design(files, target, &task.evaluator.numbers(&next.x))?;
             found = Candidate::new(next, &reserve, written, &self.wording(task, None));
         }
+        let (found, settled) = (best, lacking <= AT_REST);
         let yields = if stopped.load(Ordering::Relaxed) { [None, None] } else { [self.drawn(), project(&found.text)?.drawn()] };
         let scattering = self.scattering()?.free.len();
         Ok((found, Robustness { against: robust, scattering, rounds, settled, yields }))
@@ -419,6 +427,13 @@ impl Loaded {
 
     /// The project file with other numbers, and its analysis.
     fn with_design(&self, files: &dyn Files, target: &Path, values: &[(String, f64)]) -> Result<(String, Report), Refused> {
+        let (text, loaded) = self.rewritten(files, target, values)?;
+        let report = loaded.solve(&target.display().to_string(), "", &mut |_| true);
+        Ok((text, report))
+    }
+
+    /// The project file with other numbers, understood.
+    fn rewritten(&self, files: &dyn Files, target: &Path, values: &[(String, f64)]) -> Result<(String, Self), Refused> {
         let text = self.written(target, values).map_err(|error| {
             let mut diagnostics = Diagnostics::default();
             diagnostics.push(
@@ -430,8 +445,7 @@ impl Loaded {
         })?;
         let choices = Choices { variant: self.project.choices.variant.clone(), set: Vec::new() };
         let loaded = Self::from_file(&Changed { files, path: target, text: &text }, target, &choices)?;
-        let report = loaded.solve(&target.display().to_string(), "", &mut |_| true);
-        Ok((text, report))
+        Ok((text, loaded))
     }
 
     fn written(&self, target: &Path, values: &[(String, f64)]) -> Result<String, EditError> {

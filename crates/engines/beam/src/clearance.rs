@@ -251,21 +251,30 @@ impl<'a> Strand<'a> {
         [x + a + point[0], y + b + point[1]]
     }
 
+    /// From one place to another next to it, m.
+    fn step(&self, from: f64, to: f64) -> [f64; 2] {
+        if let Some(state) = self.state {
+            return state.step_m(from, to);
+        }
+        let [a, b] = [from, to].map(|u| self.at(u));
+        [b[0] - a[0], b[1] - a[1]]
+    }
+
     /// Position, slope and curvature by u.
     fn jet(&self, u: f64) -> [[f64; 2]; 3] {
         let centre = u.clamp(STEP, 1.0 - STEP);
-        let [before, here, after] = [self.at(centre - STEP), self.at(centre), self.at(centre + STEP)];
-        let point = if (STEP..=1.0 - STEP).contains(&u) { here } else { self.at(u) };
-        let second = [0, 1].map(|k| (after[k] - 2.0 * here[k] + before[k]) / (STEP * STEP));
-        let first = [0, 1].map(|k| (after[k] - before[k]) / (2.0 * STEP) + second[k] * (u - centre));
+        let point = self.at(u);
+        let [back, on] = [self.step(centre, centre - STEP), self.step(centre, centre + STEP)];
+        let second = [0, 1].map(|k| (on[k] + back[k]) / (STEP * STEP));
+        let first = [0, 1].map(|k| (on[k] - back[k]) / (2.0 * STEP) + second[k] * (u - centre));
         [point, first, second]
     }
 
     /// Unit vector along the beam away from one of its ends.
     fn away(&self, end: usize) -> [f64; 2] {
-        let (from, to) = if end == 0 { (self.at(0.0), self.at(STEP)) } else { (self.at(1.0), self.at(1.0 - STEP)) };
-        let length = distance(from, to);
-        [(to[0] - from[0]) / length, (to[1] - from[1]) / length]
+        let [x, y] = if end == 0 { self.step(0.0, STEP) } else { self.step(1.0, 1.0 - STEP) };
+        let length = maths::hypot(x, y);
+        [x / length, y / length]
     }
 }
 

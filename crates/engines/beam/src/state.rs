@@ -297,6 +297,18 @@ impl BeamState {
         [at[0] + cos * x - sin * y, at[1] + sin * x + cos * y]
     }
 
+    /// From one place of the axis in [0, 1] to another next to it, m: the difference of [`BeamState::shape_m`] at a tenth of the cost. Over a
+    /// fortieth of a beam the rule of three points is exact to rounding.
+    pub fn step_m(&self, from: f64, to: f64) -> [f64; 2] {
+        let [low, high] = self.line.flexible;
+        let ((index, piece, start), (other, _, end)) = (self.piece_at(from), self.piece_at(to));
+        if index == other && from.min(to) >= low && from.max(to) <= high {
+            return piece.step_m([start, end]);
+        }
+        let [a, b] = [from, to].map(|u| self.shape_m(u));
+        [b[0] - a[0], b[1] - a[1]]
+    }
+
     /// Stress along the beam on the left and right face at u, Pa, tension positive: N/A ∓ M w/(2 I). In a rigid part that where it ends.
     ///
     /// Lan, Wang & Chen 2010, eq. (5), which has the bending term only: so has [`Theory::Inextensible`]. The shift of the neutral
@@ -402,11 +414,24 @@ impl PieceState {
 
     /// Deformed position of the axis, m.
     fn shape_m(&self, u: f64) -> [f64; 2] {
-        let length = self.info.shape.length_m() * u;
-        let mut point = [0, 1].map(|i| self.info.start_m[i] + self.start_displacement_m[i]);
-        for (&node, &weight) in self.series.rule.nodes().iter().zip(self.series.rule.weights()) {
-            let (sin, cos) = maths::sin_cos(self.angle_rad(node * u));
-            let section = self.info.section_at(node * u);
+        let start = [0, 1].map(|i| self.info.start_m[i] + self.start_displacement_m[i]);
+        self.added(start, [0.0, u], self.series.rule.nodes().iter().copied().zip(self.series.rule.weights().iter().copied()))
+    }
+
+    /// From one place to another, m, where they are next to each other.
+    fn step_m(&self, range: [f64; 2]) -> [f64; 2] {
+        // Gauss–Legendre rule of three points.
+        const RULE: [(f64, f64); 3] = [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+        self.added([0.0; 2], range, RULE.into_iter())
+    }
+
+    /// A point and the integral of the slope of the axis over a range of u, by a rule on [0, 1].
+    fn added(&self, mut point: [f64; 2], [from, to]: [f64; 2], rule: impl Iterator<Item = (f64, f64)>) -> [f64; 2] {
+        let length = self.info.shape.length_m() * (to - from);
+        for (node, weight) in rule {
+            let u = from + node * (to - from);
+            let (sin, cos) = maths::sin_cos(self.angle_rad(u));
+            let section = self.info.section_at(u);
             let (axial, shear) = match self.info.theory {
                 Theory::Inextensible => (0.0, 0.0),
                 Theory::Reissner => (1.0 / section.axial_stiffness_n(), 1.0 / section.shear_stiffness_n()),

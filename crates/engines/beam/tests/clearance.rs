@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::{POM, SplitMix, close, node, random_network, rigid, solve, table3_by_nodes};
 use forcewright_base::maths;
-use forcewright_beam::{Clearance, Drive, Image, Network, Point, Reflection, Section, Shape, Support, clearance};
+use forcewright_beam::{Clearance, Drive, Image, Network, Point, Reflection, Section, Settings, Shape, Support, Theory, clearance, trace};
 
 /// Beams between clamps, each from a start with its angle coefficients and length; 1 mm thick.
 fn loose(beams: &[([f64; 2], &[f64], f64)]) -> Network {
@@ -159,6 +159,24 @@ fn thickness_of_both_beams_counts() {
     let mut network = loose(&[([0.0, 0.0], &[0.0], 0.1), ([0.0, 0.02], &[0.0], 0.1)]);
     network.beams[1].section.thickness_m = 5e-3;
     close(clearance(&network, None, &[]).expect("a distance").distance_m, 0.02 - 3e-3, 1e-15, "1 mm and 5 mm");
+}
+
+/// The rule of three points over a fortieth of a beam, against that over the whole of it.
+#[test]
+fn steps_along_an_axis_are_differences_of_its_places() {
+    let network = table3_by_nodes(POM);
+    for theory in [Theory::Inextensible, Theory::Reissner] {
+        let settings = Settings { theory, ..Settings::default() };
+        let path = trace(&network, &[0.0136], &settings, &mut |_| true).expect("a path");
+        for beam in &path.points[path.points.len() - 1].beams {
+            for i in 0..40 {
+                let [from, to] = [i, i + 1].map(|i| f64::from(i) / 40.0);
+                let ([a, b], step) = ([from, to].map(|u| beam.shape_m(u)), beam.step_m(from, to));
+                (0..2).for_each(|k| close(step[k], b[k] - a[k], 1e-14, "a step"));
+                close(beam.step_m(to, from)[0], -step[0], 1e-16, "the way back");
+            }
+        }
+    }
 }
 
 /// Distance of two axes at two places, by the engine's positions.

@@ -15,7 +15,14 @@ const IDLE: f64 = 1e-6;
 
 /// Tolerance, least gain and most iterations of steps that lead to the last one.
 const ON_THE_WAY: f64 = 1e-2;
-const MOST_ON_THE_WAY: usize = 20;
+const MOST_ON_THE_WAY: usize = 10;
+
+/// With so many starts or more, half of them begin near to the best designs that the other half has found …
+const FEWEST_TO_DIVIDE: usize = 8;
+/// … at most so many of them in turn …
+const MOST_CENTRES: usize = 4;
+/// … within this part of the ranges.
+const NEARBY: f64 = 0.3;
 
 /// What a search is asked for.
 #[derive(Clone, Debug)]
@@ -59,6 +66,17 @@ impl Reserve {
 
     pub(crate) fn of_band(&self, value: usize) -> f64 {
         self.bands.get(value).copied().unwrap_or(0.0)
+    }
+
+    /// By how much another reserve falls short of this one, from a limit or from a band: as part of the largest of this one from the same
+    /// limit, the largest of all; 0 where it lacks nothing.
+    pub fn lacking(&self, other: &Self, task: &Task) -> f64 {
+        let short = |own: &dyn Fn(usize) -> f64, other: &dyn Fn(usize) -> f64, values: std::ops::Range<usize>| {
+            let most = values.clone().fold(f64::MIN_POSITIVE, |m, at| m.max(own(at)));
+            values.fold(0.0_f64, |m, at| m.max((own(at) - other(at)) / most))
+        };
+        let limits = task.limits.iter().map(|l| short(&|at| self.of_limit(at), &|at| other.of_limit(at), l.values.clone()));
+        limits.fold(short(&|at| self.of_band(at), &|at| other.of_band(at), 0..self.bands.len()), f64::max)
     }
 
     /// Whether no distance from a limit differs from that of another reserve by more than this part of the largest from that limit, nor
@@ -172,15 +190,22 @@ pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bo
         }
         on
     };
-    let starts = all_starts(task.evaluator.as_ref(), settings);
+    let tolerance = settings.nlp.feasibility.max(1e-6) * 10.0;
     let run = |(index, start)| {
         // Starts that have not begun when it is interrupted never do; the first always does, so that there is a best.
         let begins = index == 0 || !interrupted.load(std::sync::atomic::Ordering::Relaxed);
         begins.then(|| run_steps(task, settings, (index, start, 0), &go_on))
     };
-    let runs: Vec<Option<Run>> = starts.into_par_iter().enumerate().map(run).collect();
+    let evaluator = task.evaluator.as_ref();
+    let mut starts = all_starts(evaluator, settings);
+    let around = if settings.starts >= FEWEST_TO_DIVIDE { settings.starts / 2 } else { 0 };
+    let later = starts.split_off(starts.len() - around);
+    let first = starts.len();
+    let mut runs: Vec<Option<Run>> = starts.into_par_iter().enumerate().map(run).collect();
+    // All of the first have ended before any of the others begins, so that the number of threads changes nothing.
+    let later = around_the_best(evaluator, &runs, later, tolerance);
+    runs.par_extend(later.into_par_iter().enumerate().map(|(index, start)| run((first + index, start))));
     let runs: Vec<Run> = runs.into_iter().flatten().collect();
-    let tolerance = settings.nlp.feasibility.max(1e-6) * 10.0;
     let feasible: Vec<usize> = (0..runs.len()).filter(|i| runs[*i].feasible(tolerance)).collect();
     let least = |indices: &[usize], of: &dyn Fn(&Run) -> f64| {
         indices.iter().copied().filter(|i| !of(&runs[*i]).is_nan()).reduce(|best, i| if of(&runs[i]) < of(&runs[best]) { i } else { best })
@@ -189,6 +214,29 @@ pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bo
     let best = least(&feasible, &|r| r.goal).or_else(|| least(&all, &|r| r.violation));
     let basins = basins(task.evaluator.as_ref(), &runs, feasible);
     Search { best, basins, interrupted: interrupted.into_inner(), runs }
+}
+
+/// Starts near to the best designs that were found, in place of others spread over the ranges: as far from them as those lie from the middle
+/// of their range, on a smaller scale. Starts stay what they are where nothing was found.
+fn around_the_best(evaluator: &dyn Evaluator, runs: &[Option<Run>], starts: Vec<Vec<f64>>, tolerance: f64) -> Vec<Vec<f64>> {
+    let found: Vec<Run> = runs.iter().flatten().cloned().collect();
+    let feasible = (0..found.len()).filter(|i| found[*i].feasible(tolerance)).collect();
+    let mut best = basins(evaluator, &found, feasible);
+    best.truncate(MOST_CENTRES);
+    if best.is_empty() {
+        return starts;
+    }
+    let near = |(index, start): (usize, Vec<f64>)| {
+        let centre = &found[best[index % best.len()].best].x;
+        let scattered = |((v, x), own): ((&Variable, f64), &f64)| {
+            // What is no number of the design, such as a window, begins where it ended.
+            let free = v.path.contains('.') && v.lower.is_finite() && v.upper.is_finite();
+            let off = if free { NEARBY * (x - f64::midpoint(v.lower, v.upper)) } else { 0.0 };
+            (own + off).clamp(v.lower, v.upper)
+        };
+        evaluator.variables().iter().zip(start).zip(centre).map(scattered).collect()
+    };
+    starts.into_iter().enumerate().map(near).collect()
 }
 
 /// Searches on from where a run ended, with other settings; only the last step of the task.

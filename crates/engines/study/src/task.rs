@@ -23,6 +23,8 @@ pub struct Limit {
     pub scale: f64,
     /// Symbol of the SI unit.
     pub unit: &'static str,
+    /// Whether the values are of the stretch in a band, which falls apart where the band is left between two values.
+    pub in_band: bool,
 }
 
 /// Values that stay within a band around a level: |v/level − 1| ≤ half width.

@@ -59,12 +59,11 @@ pub fn nearest(design: &Design, behaviour: &Behaviour) -> Option<Nearest> {
 pub(crate) fn gap_around_m(design: &Design, behaviour: &Behaviour) -> Option<f64> {
     let circle = design.layout.circle?;
     let inner = |state: &BeamState| {
-        let off = |u: f64| {
-            let [x, y] = state.shape_m(u);
+        let off = |u: f64, [x, y]: [f64; 2]| {
             let [ox, oy] = circle.axis_m;
             (x - ox) * circle.outward[0] + (y - oy) * circle.outward[1] - 0.5 * state.thickness_m(u)
         };
-        least_along(off).1
+        least_along(state, off).1
     };
     let of = |point: &Point| point.beams.iter().map(inner).reduce(f64::min);
     let inner_m = least(behaviour, of, |point, _| of(point), |inner_m| *inner_m)?;
@@ -89,24 +88,33 @@ pub fn margin(behaviour: &Behaviour, envelope: &Envelope) -> Option<Margin> {
 
 /// Where a beam is nearest to the sides, and how near, m.
 fn beam_margin(state: &BeamState, envelope: &Envelope) -> (f64, f64) {
-    let at = |u: f64| {
-        let [x, y] = state.shape_m(u);
+    let at = |u: f64, [x, y]: [f64; 2]| {
         let sides = [x - envelope.low_m[0], envelope.high_m[0] - x, y - envelope.low_m[1], envelope.high_m[1] - y];
         let half_m = 0.5 * state.thickness_m(u);
         let margin_m = sides.into_iter().fold(f64::INFINITY, f64::min) - half_m;
         // A face on a side touches it, whatever rounding says.
         if margin_m.abs() <= TOUCH * half_m { 0.0 } else { margin_m }
     };
-    least_along(at)
+    least_along(state, at)
 }
 
-/// The least of a quantity along a beam: where, and how much.
-fn least_along(at: impl Fn(f64) -> f64) -> (f64, f64) {
+/// The least along a beam of a quantity of the place and of where it is: where, and how much.
+fn least_along(state: &BeamState, of: impl Fn(f64, [f64; 2]) -> f64) -> (f64, f64) {
     let place = |i: usize| i as f64 / PLACES as f64;
-    let values: Vec<f64> = (0..=PLACES).map(|i| at(place(i))).collect();
-    let best = (0..=PLACES).reduce(|b, i| if values[i] < values[b] { i } else { b }).unwrap_or(0);
-    let found = roots::minimise(&at, place(best.saturating_sub(1)), place((best + 1).min(PLACES)), 1e-7);
-    if found.value < values[best] { (found.x, found.value) } else { (place(best), values[best]) }
+    let mut point = state.shape_m(0.0);
+    let mut best = (0, of(0.0, point));
+    for i in 1..=PLACES {
+        let [x, y] = state.step_m(place(i - 1), place(i));
+        point = [point[0] + x, point[1] + y];
+        let value = of(place(i), point);
+        if value < best.1 {
+            best = (i, value);
+        }
+    }
+    let at = |u: f64| of(u, state.shape_m(u));
+    let known = (place(best.0), at(place(best.0)));
+    let found = roots::minimise(at, place(best.0.saturating_sub(1)), place((best.0 + 1).min(PLACES)), 1e-7);
+    if found.value < known.1 { (found.x, found.value) } else { known }
 }
 
 /// The least of a quantity over the states of a path, refined between two neighbours of the least; `near` follows a known one.

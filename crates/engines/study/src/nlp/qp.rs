@@ -10,7 +10,7 @@
 //! decides, on the rows near their bounds first and then on those that its answer violates, until none is. Either answer is then taken
 //! to working precision by the same linear system.
 
-use super::active::{Equations, Guess};
+use super::active::{Equations, Guess, Side};
 use super::dual::Dual;
 use super::interior;
 use super::outcome::Counters;
@@ -76,7 +76,54 @@ pub(super) struct QpSolver {
     equations: Equations,
     guess: Guess,
     dual: Dual,
+    reachable: Reachable,
     pub(super) answer: Answer,
+}
+
+/// The rows that a step within the bounds can break, or that a guess holds: of a few hundred most are out of reach.
+#[derive(Debug, Default)]
+struct Reachable {
+    /// Their places among all.
+    kept: Vec<usize>,
+    rows: Vec<f64>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    /// The guess of the active set of all rows.
+    sides: Vec<Side>,
+}
+
+impl Reachable {
+    fn fill(&mut self, qp: &Qp<'_>, sides: &[Side]) {
+        self.kept.clear();
+        self.rows.clear();
+        for (i, side) in sides.iter().enumerate() {
+            let (mut low, mut high) = (0.0, 0.0);
+            for ((a, l), u) in qp.row(i).iter().zip(qp.lower).zip(qp.upper) {
+                if *a != 0.0 {
+                    let (at_lower, at_upper) = (a * l, a * u);
+                    low += f64::min(at_lower, at_upper);
+                    high += f64::max(at_lower, at_upper);
+                }
+            }
+            // Written so that what is not a number is within reach. A row of zeros is violated or not, whatever the step.
+            if *side != Side::Off || qp.is_equality(i) || !(low >= qp.row_lower[i] && high <= qp.row_upper[i]) {
+                self.kept.push(i);
+                self.rows.extend_from_slice(qp.row(i));
+            }
+        }
+        let of = |all: &[f64], own: &mut Vec<f64>| {
+            own.clear();
+            own.extend(self.kept.iter().map(|i| all[*i]));
+        };
+        of(qp.row_lower, &mut self.lower);
+        of(qp.row_upper, &mut self.upper);
+    }
+
+    /// The programme of these rows.
+    fn qp<'a>(&'a self, of: &Qp<'a>) -> Qp<'a> {
+        let firm_from = self.kept.partition_point(|i| *i < of.firm_from);
+        Qp { rows: &self.rows, row_lower: &self.lower, row_upper: &self.upper, firm_from, ..*of }
+    }
 }
 
 impl QpSolver {
@@ -87,6 +134,28 @@ impl QpSolver {
             return self.without_variables(qp);
         }
         self.guess.fit(qp);
+        let mut reachable = std::mem::take(&mut self.reachable);
+        reachable.sides.clone_from(&self.guess.rows);
+        reachable.fill(qp, &self.guess.rows);
+        self.guess.rows.clear();
+        self.guess.rows.extend(reachable.kept.iter().map(|i| reachable.sides[*i]));
+        let outcome = self.solve_reachable(&reachable.qp(qp), counters);
+        if !self.guess.rows.is_empty() || reachable.kept.is_empty() {
+            // Back among all rows; a guess that was given up stays so.
+            reachable.sides.fill(Side::Off);
+            reachable.kept.iter().zip(&self.guess.rows).for_each(|(i, side)| reachable.sides[*i] = *side);
+            self.guess.rows.clone_from(&reachable.sides);
+        }
+        if outcome == Outcome::Solved {
+            let mut rows = vec![0.0; qp.row_lower.len()];
+            reachable.kept.iter().zip(&self.answer.rows).for_each(|(i, y)| rows[*i] = *y);
+            self.answer.rows = rows;
+        }
+        self.reachable = reachable;
+        outcome
+    }
+
+    fn solve_reachable(&mut self, qp: &Qp<'_>, counters: &mut Counters) -> Outcome {
         if self.equations.mend(qp, &mut self.guess, &mut self.answer, FEW) {
             return Outcome::Solved;
         }

@@ -2,12 +2,20 @@
 
 use std::ops::Range;
 
+use forcewright_base::maths;
 use forcewright_beam::Network;
 
 /// Beams that meet are kept apart only beyond this part of their lengths from the node that they share.
-const NEAR_JOINT: f64 = 0.125;
+pub(super) const NEAR_JOINT: f64 = 0.125;
 /// Steps of Newton's method from the nearest samples.
 const STEPS: usize = 4;
+
+/// Parts of the stretch next to a joint in which crossings are looked for.
+const FINE: usize = 16;
+/// Distance, relative to a length, at which two ends are in the same place: axes end there up to the accuracy of their curve.
+const TOUCH: f64 = 1e-3;
+/// Beams that leave a joint within this angle of each other, rad, count as crossing: the least bending makes them cross.
+const SIDE_BY_SIDE: f64 = 0.02;
 
 /// Places that a side of the polygons spans with which a search begins.
 const STRIDE: usize = 2;
@@ -67,7 +75,8 @@ impl Line {
             let apart = minus(self.at(u), point);
             dot(apart, apart)
         };
-        let best = (0..=self.cells()).reduce(|b, i| if square(place(i)) < square(place(b)) { i } else { b }).unwrap_or(0);
+        let all = (0..=self.cells()).map(|i| (i, square(place(i))));
+        let best = all.reduce(|b, next| if next.1 < b.1 { next } else { b }).map_or(0, |b| b.0);
         let (mut u, most) = (place(best), 1.0 / self.cells() as f64);
         let nearby = [(u - most).max(low), (u + most).min(high)];
         for _ in 0..STEPS {
@@ -83,10 +92,11 @@ impl Line {
     /// The place between two others at which the distance to a wall across an axis is least; `sign` is that of what is inside, `half_m`
     /// half the thickness.
     pub(super) fn nearest_to_wall(&self, (axis, sign): (usize, f64), half_m: impl Fn(f64) -> f64, [low, high]: [f64; 2]) -> f64 {
-        let place = |i: usize| (i as f64 / self.cells() as f64).clamp(low, high);
-        let room = |i: usize| sign * self.local(place(i)).at[axis] - half_m(place(i));
-        let best = (0..=self.cells()).reduce(|b, i| if room(i) < room(b) { i } else { b }).unwrap_or(0);
-        let (mut u, most) = (place(best), 1.0 / self.cells() as f64);
+        let count = self.cells() as f64;
+        let inside = |i: &usize| (low..=high).contains(&(*i as f64 / count));
+        let rooms = (0..=self.cells()).filter(inside).map(|i| (i as f64 / count, sign * self.0[i][0][axis] - half_m(i as f64 / count)));
+        let best = rooms.reduce(|b, next| if next.1 < b.1 { next } else { b });
+        let (mut u, most) = (best.map_or(low, |b| b.0), 1.0 / count);
         let nearby = [(u - most).max(low), (u + most).min(high)];
         for _ in 0..STEPS {
             // The thickness is linear between its places: its slope counts, its bend does not.
@@ -119,23 +129,81 @@ pub(super) struct Nearest {
     pub(super) crossed: bool,
 }
 
-/// Where two beams are nearest within two ranges. Where their axes cross, the end that would have to be drawn the shortest way to the
-/// other beam until they do not.
+/// Where two beams are nearest within two ranges. Where their axes cross, within the ranges or next to a joint, the end that would have to
+/// be drawn the shortest way to the other beam until they do not.
 pub(super) fn closest(lines: [&Line; 2], ranges: [[f64; 2]; 2]) -> Nearest {
     let (distance, u, v) = of_polygons(lines, ranges);
     let (u, v) = settled(lines, (u, v), ranges);
-    // Axes that cross where their polygons do not are nearer than any thickness.
-    if distance > 0.0 {
-        return Nearest { at: [u, v], crossed: false };
-    }
+    let nearest = Nearest { at: [u, v], crossed: distance <= 0.0 };
+    let reach = if nearest.crossed {
+        ranges
+    } else if cross_at_a_joint(lines, ranges) {
+        [[0.0, 1.0]; 2]
+    } else {
+        // Axes that cross where their polygons do not are nearer than any thickness.
+        return nearest;
+    };
     let ends = [0, 1].into_iter().flat_map(|which| ranges[which].map(|end| (which, end)));
     // An end that is kept apart only from a joint on is not one that can be drawn through the other beam.
     let drawn = ends.filter(|(_, end)| matches!(*end, 0.0 | 1.0)).map(|(which, end)| {
-        let (square, there) = lines[1 - which].nearest_to(lines[which].at(end), ranges[1 - which]);
+        let (square, there) = lines[1 - which].nearest_to(lines[which].at(end), reach[1 - which]);
         (square, if which == 0 { [end, there] } else { [there, end] })
     });
     let shortest = drawn.reduce(|best, next| if next.0 < best.0 { next } else { best });
-    Nearest { at: shortest.map_or([u, v], |(_, at)| at), crossed: true }
+    shortest.map_or(nearest, |(_, at)| Nearest { at, crossed: true })
+}
+
+/// Whether two beams that share a node cross where they are not kept apart, so near to it that they cannot be far from each other anyway: a
+/// short beam may pass through the beginning of a long one, and beams that leave a node side by side through each other.
+fn cross_at_a_joint(lines: [&Line; 2], ranges: [[f64; 2]; 2]) -> bool {
+    let joints = |which: usize| [(ranges[which][0] > 0.0, 0.0), (ranges[which][1] < 1.0, 1.0)].into_iter().filter(|j| j.0).map(|j| j.1);
+    let lengths = lines.map(|line| dot(line.0[0][1], line.0[0][1]).sqrt());
+    let longest = lengths[0].max(lengths[1]);
+    let reach = (NEAR_JOINT * longest).min(lengths[0]).min(lengths[1]);
+    let meet = |a: f64, b: f64| {
+        let apart = minus(lines[0].at(a), lines[1].at(b));
+        dot(apart, apart) <= TOUCH * TOUCH * longest * longest
+    };
+    let mut all = joints(0).flat_map(|a| joints(1).map(move |b| [a, b]));
+    all.any(|joint| {
+        meet(joint[0], joint[1]) && can_meet_again(lines, joint, lengths.map(|own| (reach / own).min(1.0))) && {
+            // The same arc lengths of both, as far as the longer one is let through; closer together where they may cross after next to
+            // nothing.
+            let sides = [0, 1].map(|which| {
+                let part = reach / (lengths[which] * (FINE * FINE) as f64);
+                let at = |i: usize| lines[which].at((joint[which] - (i * i) as f64 * part).abs());
+                let places: Vec<[f64; 2]> = (0..=FINE).map(at).collect();
+                places.windows(2).map(|w| ([w[0], w[1]], Disc::around([w[0], w[1]]))).collect::<Vec<_>>()
+            });
+            let crosses = |i: usize, j: usize| {
+                let [(own, disc), (its, other)] = [&sides[0][i], &sides[1][j]];
+                !disc.surely_beyond(other, 0.0) && of_segments(*own, *its).0 == 0.0
+            };
+            // The first sides meet in the node: those that leave it side by side are about to cross.
+            let (leaving, other) = (sides[0][0].0[1], sides[1][0].0[1]);
+            let (apart, way) = (minus(leaving, other), minus(leaving, sides[0][0].0[0]));
+            dot(apart, apart) <= SIDE_BY_SIDE * SIDE_BY_SIDE * dot(way, way)
+                || (0..FINE).any(|i| (0..FINE).any(|j| i + j > 0 && crosses(i, j)))
+        }
+    })
+}
+
+/// Whether two lines that leave a joint can meet again within parts of their lengths: the triangle that they would enclose has no angle
+/// left for it unless they turn by the angle between them at the joint.
+fn can_meet_again(lines: [&Line; 2], joint: [f64; 2], parts: [f64; 2]) -> bool {
+    let angle = |a: [f64; 2], b: [f64; 2]| maths::atan2((a[0] * b[1] - a[1] * b[0]).abs(), dot(a, b));
+    let leaving = [0, 1].map(|which| {
+        let by = lines[which].local(joint[which]).by;
+        if joint[which] > 0.5 { [-by[0], -by[1]] } else { by }
+    });
+    let turned = |which: usize| -> f64 {
+        let line = lines[which];
+        let cells = line.cells();
+        let last = (0..cells).find(|i| *i as f64 >= parts[which] * cells as f64).unwrap_or(cells);
+        let place = |i: usize| if joint[which] > 0.5 { cells - i } else { i };
+        (0..last).map(|i| angle(line.0[place(i)][1], line.0[place(i + 1)][1])).sum()
+    };
+    angle(leaving[0], leaving[1]) <= turned(0) + turned(1) + SIDE_BY_SIDE
 }
 
 /// Goes to the nearest places by Newton's method on half the squared distance.
@@ -258,7 +326,6 @@ mod tests {
 
     /// A quarter of a circle of radius 1 about (x, 0), from the top to the right.
     fn quarter(x: f64) -> Line {
-        use forcewright_base::maths;
         let angle = std::f64::consts::FRAC_PI_2;
         let place = |i: i32| {
             let (sin, cos) = maths::sin_cos(angle * f64::from(i) / 16.0);
@@ -276,7 +343,7 @@ mod tests {
         // Thicker by a tenth per place: where the slope of the circle is a tenth.
         let u = quarter(0.0).nearest_to_wall((1, -1.0), |u| 0.1 * u, [0.0, 1.0]);
         let angle = std::f64::consts::FRAC_PI_2;
-        assert!((angle * forcewright_base::maths::sin(angle * u) - 0.1).abs() < 1e-4, "{u}");
+        assert!((angle * maths::sin(angle * u) - 0.1).abs() < 1e-4, "{u}");
     }
 
     #[test]
@@ -306,5 +373,23 @@ mod tests {
         // The same whichever comes first.
         let Nearest { at, crossed } = closest([&along, &across], [[0.0, 1.0], [0.125, 1.0]]);
         assert!(crossed && at.map(f64::to_bits) == [v, u].map(f64::to_bits), "{at:?}");
+    }
+    #[test]
+    fn crossings_next_to_a_joint_are_seen() {
+        // Lines that only meet in a joint do not cross.
+        let (short, long) = (straight([0.5, 0.5], [0.0, 0.0]), straight([0.0, 0.0], [10.0, 0.0]));
+        assert!(!closest([&short, &long], [[0.0, 0.875], [0.125, 1.0]]).crossed);
+        // Side by side at the joint counts; a tenth of a radian apart does not, unless they bend towards each other.
+        let long = straight([0.0, 0.0], [10.0, 0.0]);
+        let ranges = [[0.125, 1.0]; 2];
+        assert!(closest([&straight([0.0, 0.0], [8.0, 0.1]), &long], ranges).crossed);
+        assert!(!closest([&straight([0.0, 0.0], [8.0, 0.8]), &long], ranges).crossed);
+        // y = 0.1 x − x², crosses at x = 0.1, long before the range begins.
+        let place = |i: i32| {
+            let x = f64::from(i) / 16.0;
+            [[x, 0.1 * x - x * x], [1.0, 0.1 - 2.0 * x]]
+        };
+        let Nearest { at: [u, v], crossed } = closest([&Line::new((0..=16).map(place).collect()), &long], ranges);
+        assert!(crossed && u == 1.0 && (v - 0.1).abs() < 1e-6, "{u} {v}");
     }
 }

@@ -14,6 +14,7 @@ use super::knobs::{Knob, Knobs};
 use super::line::Line;
 use super::task::Wanted;
 use crate::design::{Design, Envelope};
+use crate::layout::Mirror;
 use places::{Filling, Place};
 use rows::Rows;
 
@@ -59,10 +60,20 @@ pub(super) enum Block {
     Envelope(Envelope),
     /// Distance of each pair of beams at each state, m.
     Clearance(Vec<[usize; 2]>),
+    /// Distance of each beam at each state to its mirror image, m: twice that to the line. Beams that keep to their own side of it are no
+    /// nearer to the images of others than one of them is to its own.
+    Mirror(Mirror),
     /// Arc length over chord of each beam.
     LengthRatio,
     /// Mass of all beams of the whole layout, kg, by the density of each drawn one, kg/m³.
     Mass(Vec<f64>),
+}
+
+impl Block {
+    /// Whether it looks at where beams are.
+    fn is_of_places(&self) -> bool {
+        matches!(self, Self::Envelope(_) | Self::Clearance(_) | Self::Mirror(_))
+    }
 }
 
 /// See the module.
@@ -154,6 +165,7 @@ impl Search {
                 ("envelope margin", "m", sides(envelope).iter().map(|side| of_side(side.0)).sum())
             }
             Block::Clearance(pairs) => ("clearance", "m", pairs.len() * (STATES.len() + 1)),
+            Block::Mirror(_) => ("clearance of the mirrored half", "m", beams * (STATES.len() + 1)),
             Block::LengthRatio => ("length ratio", "1", beams),
             Block::Mass(_) => ("mass", "kg", 1),
         }
@@ -248,7 +260,7 @@ impl Search {
         room.x.clear();
         self.knobs.apply(&self.base, x, &mut room.network).ok_or_else(|| failure("a beam does not span its nodes".to_owned()))?;
         self.stations(x, &mut room.stations_m);
-        let looks = self.blocks.iter().any(|b| matches!(b, Block::Stress | Block::Envelope(_) | Block::Clearance(_)));
+        let looks = self.blocks.iter().any(|b| *b == Block::Stress || b.is_of_places());
         let states_m: Vec<f64> =
             if looks { [0.0].into_iter().chain(STATES.map(|part| part * self.travel_m)).collect() } else { Vec::new() };
         // The design to begin with is looked at however hard that is; of the others there are many.
@@ -267,11 +279,7 @@ impl Search {
         room.places.clear();
         out.values.clear();
         let states = room.solver.states();
-        let lines = if self.blocks.iter().any(|b| matches!(b, Block::Envelope(_) | Block::Clearance(_))) {
-            drawn(&states, room.network.beams.len())?
-        } else {
-            Vec::new()
-        };
+        let lines = if self.blocks.iter().any(Block::is_of_places) { drawn(&states, room.network.beams.len())? } else { Vec::new() };
         let curve = Curve { response: states.response(), stations_m: &room.stations_m };
         let mut filling = Filling {
             search: self,

@@ -197,6 +197,7 @@ impl Wanted {
         if limit(requirements, "clearance_min").is_some() {
             let beams = design.network.beams.len();
             wanted.blocks.push(Block::Clearance((0..beams).flat_map(|a| (a + 1..beams).map(move |b| [a, b])).collect()));
+            wanted.blocks.extend(design.layout.mirror.map(Block::Mirror));
         }
         Some(wanted)
     }
@@ -409,7 +410,18 @@ fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
     let mut add = |name: &str, key: &str, block: &Block, (lower, upper): (f64, f64), scale: f64, unit| {
         let values = search.values(block);
         if !values.is_empty() && (lower > f64::NEG_INFINITY || upper < f64::INFINITY) {
-            all.push(Limit { name: name.to_owned(), key: key.to_owned(), checks: serves(name), values, lower, upper, scale, unit });
+            let in_band = matches!(block, Block::Window | Block::WindowLength);
+            all.push(Limit {
+                name: name.to_owned(),
+                key: key.to_owned(),
+                checks: serves(name),
+                values,
+                lower,
+                upper,
+                scale,
+                unit,
+                in_band,
+            });
         }
     };
     let least_window_m = LEAST_WINDOW * design.load_end;
@@ -433,10 +445,10 @@ fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
         let least = of("envelope_margin").0.unwrap_or(0.0);
         add("envelope", "requirements.envelope", &Block::Envelope(envelope), (least, free.1), size_m, "m");
     }
-    if let (Some(least), _) = of("clearance_min")
-        && let Some(block) = wanted.blocks.iter().find(|b| matches!(b, Block::Clearance(_)))
-    {
-        add("clearance", "requirements.limits.clearance_min", block, (least, free.1), size_m, "m");
+    if let (Some(least), _) = of("clearance_min") {
+        for block in wanted.blocks.iter().filter(|b| matches!(b, Block::Clearance(_) | Block::Mirror(_))) {
+            add("clearance", "requirements.limits.clearance_min", block, (least, free.1), size_m, "m");
+        }
     }
     let bounds = |name| {
         let (min, max) = of(name);

@@ -4,9 +4,10 @@ use forcewright_base::maths;
 use forcewright_beam::{CurveStates, Face, Network};
 use forcewright_study::evaluator::Failure;
 
-use super::super::line::{Line, Nearest, apart, closest};
+use super::super::line::{Line, NEAR_JOINT, Nearest, apart, closest};
 use super::super::mass::drawn_mass_kg;
 use super::{Block, CELLS, Curve, PLACES, STATES, Search, WINDOW, sides};
+use crate::layout::Mirror;
 
 /// Where a value comes from: what its derivatives are taken of.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +29,14 @@ pub(super) enum Place {
     },
     /// The distance of a beam at `u` from a wall across an axis; `sign` is that of what is inside.
     Wall {
+        state: usize,
+        beam: usize,
+        u: f64,
+        axis: usize,
+        sign: f64,
+    },
+    /// The distance of a beam at `u` from its mirror image across an axis; `sign` is that of its own side.
+    Mirror {
         state: usize,
         beam: usize,
         u: f64,
@@ -99,6 +108,11 @@ impl Filling<'_> {
                     }
                 }
             }
+            Block::Mirror(mirror) => {
+                for state in 0..=STATES.len() {
+                    (0..self.network.beams.len()).for_each(|beam| self.mirrored(state, beam, *mirror));
+                }
+            }
             Block::LengthRatio => {
                 for (index, beam) in self.network.beams.iter().enumerate() {
                     let [x, y] = beam.shape.chord_m();
@@ -156,6 +170,24 @@ impl Filling<'_> {
             self.values.push(sign * (line.at(u)[axis] - wall) - 0.5 * own.thickness_at(u));
             self.places.push(Place::Wall { state, beam, u, axis, sign });
         }
+    }
+
+    /// Distance of a beam from its mirror image: where it is least, but not next to a node on the line, in which they meet.
+    fn mirrored(&mut self, state: usize, beam: usize, mirror: Mirror) {
+        let (axis, line_m) = match mirror {
+            Mirror::X(at) => (0, at),
+            Mirror::Y(at) => (1, at),
+        };
+        let own = &self.network.beams[beam];
+        let off = |node: usize| self.network.nodes[node].position_m[axis] - line_m;
+        // The side on which the network was drawn: of its farthest node.
+        let farthest = (0..self.network.nodes.len()).map(off).fold(0.0_f64, |most, next| if next.abs() > most.abs() { next } else { most });
+        let sign = farthest.signum();
+        let held = |node: usize| if off(node) == 0.0 { NEAR_JOINT } else { 0.0 };
+        let line = &self.lines[state][beam];
+        let u = line.nearest_to_wall((axis, sign), |u| 0.5 * own.thickness_at(u), [held(own.start), 1.0 - held(own.end)]);
+        self.values.push(2.0 * sign * (line.at(u)[axis] - line_m) - own.thickness_at(u));
+        self.places.push(Place::Mirror { state, beam, u, axis, sign });
     }
 
     /// Distance of two beams; where their axes cross, how far they are from not crossing.

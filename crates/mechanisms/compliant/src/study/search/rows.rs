@@ -55,6 +55,11 @@ impl Rows<'_, '_> {
                 knobs.add_row(by, sign, row);
                 knobs.add_half_thickness(beam, &self.network.beams[beam], u, row);
             }
+            Place::Mirror { state, beam, u, axis, sign } => {
+                let by = self.ask(state, Asked::Position { beam, u, axis: if axis == 0 { Axis::X } else { Axis::Y } })?;
+                knobs.add_row(by, 2.0 * sign, row);
+                (0..2).for_each(|_| knobs.add_half_thickness(beam, &self.network.beams[beam], u, row));
+            }
             Place::Gap { state, ends: [first, second], crossed } => {
                 let by = self.ask(state, Asked::Gap { first, second, reflection: None })?;
                 knobs.add_row(by, if crossed { -1.0 } else { 1.0 }, row);
