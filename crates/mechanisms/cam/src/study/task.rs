@@ -141,6 +141,7 @@ fn limits(many: &Many, goal: &str) -> Vec<Limit> {
             upper,
             scale,
             unit,
+            in_band: false,
         };
         if measure.name == "force_deviation" {
             for (i, level) in wanted.iter().enumerate() {
