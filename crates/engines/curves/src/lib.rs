@@ -5,10 +5,14 @@ mod chords;
 pub mod fit;
 pub mod outline;
 mod piece;
+pub mod plane;
 mod profile;
+pub mod registration;
+pub mod smoothing;
 mod spline;
 mod vector;
 pub mod walls;
+pub mod waviness;
 
 pub use bounds::{Bounds, Motion};
 pub use profile::{Nearest, Profile, ProfileError, Segment};

@@ -1,3 +1,5 @@
-//! Machine elements: what designs are made of. So far the material catalogue.
+//! Machine elements: the material catalogue, line contact, springs. Theory: `docs/theory/elements.md`.
 
+pub mod hertz;
 pub mod materials;
+pub mod springs;

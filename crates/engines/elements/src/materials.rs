@@ -11,7 +11,7 @@
 //! assert_eq!((young.value, young.source.as_str()), (2.85e9, "hostaform-c9021"));
 //! ```
 
-mod file;
+pub(crate) mod file;
 
 use std::fmt;
 use std::sync::LazyLock;

@@ -20,7 +20,7 @@ const KEYS: &[&str] = &[
 ];
 
 /// Reads a catalogue; the message says which entry and key is at fault.
-pub(super) fn read(text: &str) -> Result<Vec<Material>, String> {
+pub(crate) fn read(text: &str) -> Result<Vec<Material>, String> {
     let table = DeTable::parse(text).map_err(|error| error.to_string())?;
     let entries = table.get_ref().get("material").and_then(|list| list.get_ref().as_array()).ok_or("no [[material]]")?;
     if table.get_ref().len() != 1 {
@@ -63,7 +63,7 @@ fn material(table: &DeTable) -> Result<Material, String> {
     Ok(material)
 }
 
-fn property(table: &DeTable, key: &str, dimension: Dimension) -> Result<Option<Property>, String> {
+pub(crate) fn property(table: &DeTable, key: &str, dimension: Dimension) -> Result<Option<Property>, String> {
     let Some(inner) = inner_table(table, key, &["value", "kind", "source"])? else { return Ok(None) };
     let read = || -> Result<Property, String> {
         Ok(Property { value: si(text(inner, "value")?, dimension)?, kind: kind(inner)?, source: text(inner, "source")?.to_owned() })
@@ -109,7 +109,7 @@ fn kind(table: &DeTable) -> Result<ValueKind, String> {
     ValueKind::ALL.into_iter().find(|k| k.name() == name).ok_or_else(|| format!("kind `{name}`"))
 }
 
-fn si(quantity: &str, dimension: Dimension) -> Result<f64, String> {
+pub(crate) fn si(quantity: &str, dimension: Dimension) -> Result<f64, String> {
     Quantity::parse(quantity, dimension).map(|q| q.si).map_err(|error| format!("`{quantity}`: {error:?}"))
 }
 
@@ -120,12 +120,12 @@ fn inner_table<'a, 'i>(table: &'a DeTable<'i>, key: &str, known: &[&str]) -> Res
     Ok(Some(inner))
 }
 
-fn known_keys(table: &DeTable, known: &[&str]) -> Result<(), String> {
+pub(crate) fn known_keys(table: &DeTable, known: &[&str]) -> Result<(), String> {
     let unknown = table.keys().map(toml::Spanned::get_ref).find(|key| !known.contains(&key.as_ref()));
     unknown.map_or(Ok(()), |key| Err(format!("unknown key `{key}`")))
 }
 
-fn text<'a>(table: &'a DeTable, key: &str) -> Result<&'a str, String> {
+pub(crate) fn text<'a>(table: &'a DeTable, key: &str) -> Result<&'a str, String> {
     optional_text(table, key)?.ok_or_else(|| format!("no `{key}`"))
 }
 
