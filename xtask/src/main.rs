@@ -33,7 +33,8 @@ Commands:
   test [--rust] [--parts] [--examples] [--browser]
                        everything a fresh machine with Rust and Python 3 can run; with options only the Rust tests,
                        only files of parts or only the examples as Python reads them, only their reports in a browser
-  validate             read files of parts with a CAD kernel (OpenCASCADE, some hundred megabytes, installed if possible)
+  validate             read files of parts with a CAD kernel (OpenCASCADE, some hundred megabytes, installed if possible);
+                       compare beams with finite elements (CalculiX, if `ccx` is in the path; some minutes)
   fuzz [seconds]       feed noise to the reader of project files (60 s by default); needs cargo-fuzz
   help                 this text
 

@@ -7,8 +7,9 @@ use std::time::Duration;
 use serde_json::json;
 
 use crate::Workspace;
+use crate::generate::built;
 use crate::metadata::{self, cargo};
-use crate::python::{CAD, TOOLS};
+use crate::python::{CAD, TOOLS, python_name};
 use crate::step::{Outcome, Steps, visible};
 use crate::test::{emptied, run_script};
 
@@ -22,7 +23,7 @@ pub(crate) fn run(workspace: &Workspace, steps: &mut Steps) {
     run_script(&mut command, &folder.join("parts.json"), &job, "parts", Duration::from_mins(5), steps);
 }
 
-/// Solids in a CAD kernel: the command `validate`.
+/// Solids in a CAD kernel, force curves by finite elements: the command `validate`.
 pub(crate) fn validate(workspace: &Workspace) -> ExitCode {
     let mut steps = Steps::default();
     if let Some((folder, samples)) = samples(workspace, &mut steps) {
@@ -42,9 +43,26 @@ pub(crate) fn validate(workspace: &Workspace) -> ExitCode {
             );
         }
     }
+    finite_elements(workspace, &mut steps);
     let code = steps.summary("validate");
     println!("\n{}", steps.closing_line());
     code
+}
+
+/// Force curves of beams against those of finite elements, where CalculiX is installed.
+fn finite_elements(workspace: &Workspace, steps: &mut Steps) {
+    let (Some(binary), Ok(metadata)) = (built(workspace, None, steps), metadata::read(workspace)) else { return };
+    let folder = metadata.target.join("xtask");
+    let job = json!({
+        "binary": binary,
+        "root": workspace.root,
+        "folder": folder.join("finite-elements"),
+        "element": "0.5 mm",
+        "reference": workspace.root.join("reference/lan2010-finite-elements.csv"),
+    });
+    let mut command = Command::new(python_name());
+    command.current_dir(&workspace.root).arg("xtask/python/finite_elements.py");
+    run_script(&mut command, &folder.join("finite-elements.json"), &job, "finite elements", Duration::from_mins(60), steps);
 }
 
 /// Writes the samples. Gives the folder of the tasks, and that of the samples in it.

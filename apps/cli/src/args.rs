@@ -154,7 +154,8 @@ fn optimise() -> Command {
 }
 
 const EXPORT_HELP: &str = "\
-Formats: dxf (closed polylines with arcs, for cutting), svg (true size), step (solid), stl and 3mf (meshes). Lengths are in millimetres.
+Formats: dxf (closed polylines with arcs, for cutting), svg (true size), step (solid), stl and 3mf (meshes), inp (plane finite elements for
+CalculiX and Abaqus: quadratic triangles of plane stress between the pads, held and moved as the project says). Lengths are in millimetres.
 
 FILE-part.html shows the part with its measures and lists the files. With --variant the names say FILE-VARIANT.
 
@@ -164,7 +165,7 @@ Exit codes: 0 written, 1 written but the process cannot make it, 2 error in the 
 
 fn export() -> Command {
     let command = Command::new("export")
-        .about("Files for making the part: DXF, SVG, STEP, STL, 3MF")
+        .about("Files for making the part: DXF, SVG, STEP, STL, 3MF; for finite elements: INP")
         .arg(file().help("Project file"))
         .arg(
             Arg::new("format")
@@ -173,7 +174,14 @@ fn export() -> Command {
                 .value_delimiter(',')
                 .default_value("dxf,step")
                 .value_parser(crate::commands::export::parse_format)
-                .help("Formats, separated by commas: dxf, svg, step, stl, 3mf"),
+                .help("Formats, separated by commas: dxf, svg, step, stl, 3mf, inp"),
+        )
+        .arg(
+            Arg::new("element")
+                .long("element")
+                .value_name("LENGTH")
+                .value_parser(crate::commands::export::parse_element)
+                .help("inp: sides of the elements, such as 0.2mm; without it a quarter of the thinnest wall"),
         )
         .arg(
             Arg::new("out")

@@ -152,10 +152,33 @@ fn faces_of_the_solid_are_few() {
 fn every_format_is_written_and_the_same_each_time() {
     let all = export("compliant/lan-sub-cfm", &["parts.hole=2 mm", "parts.pad=[\"6 mm\", \"6 mm\"]"], &Format::ALL).expect("a part");
     let names: Vec<&str> = all.files.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["part.dxf", "part.svg", "part.step", "part.stl", "part.3mf"]);
+    assert_eq!(names, ["part.dxf", "part.svg", "part.step", "part.stl", "part.3mf", "part.inp"]);
     let again = export("compliant/lan-sub-cfm", &["parts.hole=2 mm", "parts.pad=[\"6 mm\", \"6 mm\"]"], &Format::ALL).expect("a part");
     assert_eq!(all.files, again.files);
     assert_eq!(all.set.parts[0].holes.len(), 3, "two clamps, one block");
+}
+
+/// What CalculiX is told: the pads of both halves held, the block moved, the material of the file.
+#[test]
+fn finite_elements_are_held_and_moved_as_the_project_says() {
+    let text = |set: &[&str]| {
+        let exported = export("compliant/lan-table3", set, &[Format::Inp]).expect("a part");
+        String::from_utf8(exported.files[0].1.clone()).expect("text")
+    };
+    let whole = text(&[]);
+    let sets: Vec<&str> = whole.lines().filter_map(|line| line.strip_prefix("*NSET, NSET=")).collect();
+    assert_eq!(sets, ["GRIP1_N1", "GRIP2_N2", "GRIP3_N2_MIRRORED", "GRIP4_N5"]);
+    // Poisson's ratio of the catalogue, 0.35: 2000 · 1.7/1.35² and 0.35/1.35.
+    assert!(whole.contains("*ELASTIC\n1865.569272976681, 0.259259259259\n"));
+    assert!(whole.contains("*BOUNDARY\nGRIP1_N1, 1, 2\nGRIP2_N2, 1, 2\nGRIP3_N2_MIRRORED, 1, 2\n*STEP, NLGEOM"));
+    assert!(whole.contains("GRIP4_N5, 1, 1, 0\nGRIP4_N5, 2, 2, -13.6\n"));
+    // A force has no increments of its own: only the mesh.
+    let example = forcewright::gallery::find("compliant/lan-table3").expect("in the gallery");
+    let pushed = example.text.replace("travel = \"13.6 mm\"", "force = \"5 N\"");
+    let loaded = Loaded::from_text("pushed.toml", &pushed, &Choices::default()).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let exported = loaded.export("part", &[Format::Inp], &Options::default()).expect("a part");
+    let weight = String::from_utf8(exported.files[0].1.clone()).expect("text");
+    assert!(weight.contains("** Only the mesh: only a single travel is passed on") && !weight.contains("*STEP"));
 }
 
 #[test]

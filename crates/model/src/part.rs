@@ -28,6 +28,30 @@ pub struct Part {
     pub fillets: Option<Fillets>,
     /// What the maker must know, a sentence each.
     pub notes: Vec<String>,
+    /// How it is held and moved, for finite elements; else what keeps that from being said.
+    pub trial: Result<Trial, String>,
+}
+
+/// A part in its machine: what a program of finite elements must know besides the outline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// Young's modulus, Pa.
+    pub young_pa: f64,
+    /// Poisson's ratio, in (−1, 0.5).
+    pub poisson: f64,
+    /// Where it is held and moved.
+    pub grips: Vec<Grip>,
+}
+
+/// A region whose material is as good as rigid: screwed to the ground, or part of what moves the part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grip {
+    /// Name of its node or body.
+    pub name: String,
+    /// Its corners, convex, counterclockwise, m.
+    pub corners_m: Vec<[f64; 2]>,
+    /// By how much it is moved without turning at the end of the path, m; zero where it is held.
+    pub displacement_m: [f64; 2],
 }
 
 impl Part {

@@ -6,7 +6,7 @@ use std::str::FromStr as _;
 
 use clap::ArgMatches;
 use forcewright::base::text::visible;
-use forcewright::base::units::format_number;
+use forcewright::base::units::{Dimension, Quantity, format_number};
 use forcewright::fabricate::{Format, Options};
 use forcewright::{Choices, DiskFiles, Exported, Loaded};
 
@@ -18,6 +18,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let (Some(file), Some(out)) = (matches.get_one::<PathBuf>("file"), matches.get_one::<PathBuf>("out")) else { return exit::USAGE };
     let as_json = matches.get_flag("json");
     let formats: Vec<Format> = matches.get_many::<Format>("format").map(|all| all.copied().collect()).unwrap_or_default();
+    let options = Options { element_m: matches.get_one::<f64>("element").copied(), ..Options::default() };
     let choices = choices(matches);
     let loaded = match Loaded::from_file(&DiskFiles, file, &choices) {
         Ok(loaded) => loaded,
@@ -25,7 +26,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     };
     output::narrate(&loaded.project.diagnostics.render(&loaded.project.sources, output::colour_on_stderr()));
     let stem = stem(file, &choices);
-    let exported = match loaded.export(&stem, &formats, &Options::default()) {
+    let exported = match loaded.export(&stem, &formats, &options) {
         Ok(exported) => exported,
         Err(none) => {
             output::complain(none.code, &none.message, &none.help, as_json);
@@ -60,6 +61,12 @@ fn stem(file: &Path, choices: &Choices) -> String {
 /// The formats of a list such as `dxf,step`.
 pub(crate) fn parse_format(text: &str) -> Result<Format, String> {
     Format::from_str(text).map_err(|unknown| unknown.to_string())
+}
+
+/// A length, m.
+pub(crate) fn parse_element(text: &str) -> Result<f64, String> {
+    let length = Quantity::parse(text, Dimension::Length).map_err(|_| "is no length such as 0.2mm".to_owned())?;
+    if (1e-9..=1.0).contains(&length.si) { Ok(length.si) } else { Err("must lie between 1e-6 mm and 1 m".to_owned()) }
 }
 
 fn summary(exported: &Exported) -> String {

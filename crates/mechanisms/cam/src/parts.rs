@@ -39,6 +39,9 @@ pub struct Making {
 /// Places at which the arcs are compared with the profile.
 const PROBES: usize = 2000;
 
+/// Why no finite elements of it are of use.
+const RIGID: &str = "the parts of a cam mechanism are taken as rigid";
+
 /// Intervals between the places of a side to be measured.
 const INSPECTED: u32 = 24;
 
@@ -183,6 +186,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
             outline: plate(making, &profiles),
             cutouts: Vec::new(),
             fillets: None,
+            trial: Err(RIGID.to_owned()),
             holes: mounting_holes(making, &profiles),
             notes,
         });
@@ -197,6 +201,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
                 outline: outer_plate(making, drawn),
                 cutouts: Vec::new(),
                 fillets: None,
+                trial: Err(RIGID.to_owned()),
                 holes: Vec::new(),
                 notes: notes.clone(),
             });
@@ -402,6 +407,7 @@ fn roller(design: &Design, material: Option<String>, thickness_m: f64) -> Part {
         outline: Profile::circle([0.0; 2], design.cut_roller_m),
         cutouts: Vec::new(),
         fillets: None,
+        trial: Err(RIGID.to_owned()),
         holes: vec![Hole { centre_m: [0.0; 2], diameter_m: pin_m, purpose: "axle".to_owned() }],
         notes: vec!["A ball bearing of this outer diameter does as well.".to_owned()],
     }
@@ -436,6 +442,7 @@ fn braces(design: &Design) -> Vec<Part> {
             outline,
             cutouts: Vec::new(),
             fillets: None,
+            trial: Err(RIGID.to_owned()),
             holes: vec![hole(0.0, "axle of the roller"), hole(length_m, "joint of the slider")],
             notes: vec!["The distance of the holes is the brace length: it moves the force little, the two of a pair should be equal.".to_owned()],
         }
@@ -458,6 +465,7 @@ fn pin(design: &Design, thickness_m: f64) -> Part {
         outline: Profile::circle([0.0; 2], 0.5 * making.pin_m),
         cutouts: Vec::new(),
         fillets: None,
+        trial: Err(RIGID.to_owned()),
         holes: Vec::new(),
         notes: vec!["Longer where several springs stand side by side on it.".to_owned()],
     }

@@ -6,12 +6,13 @@ use forcewright_beam::{Beam, Image, Joint as BeamJoint, Rotation, Support};
 use forcewright_curves::outline::{AxisPoint, Block, Cap, HalfWidth, Joint, Network, Node, Outline, OutlineError, Region, Strip, Tag};
 use forcewright_curves::walls::{Narrow, narrowest_gap, thinnest_wall};
 use forcewright_curves::{Profile, Segment};
-use forcewright_model::{Check, CheckState, Fillets, Hole, NoPart, Part, PartMark, PartSet, Sense};
+use forcewright_model::{Check, CheckState, Fillets, Grip, Hole, NoPart, Part, PartMark, PartSet, Sense, Trial};
 
 use crate::analysis::Behaviour;
 use crate::checks::rounded_down;
 use crate::design::Design;
 use crate::layout::Mirror;
+use crate::loads::Control;
 use crate::pads;
 use crate::scene::hull;
 
@@ -404,6 +405,7 @@ impl<'a> Drawing<'a> {
             holes: holes.iter().filter(|h| region.outer.profile.contains(h.centre_m)).cloned().collect(),
             fillets: fillets(region),
             notes: notes.clone(),
+            trial: self.trial(&region.outer.profile),
         });
         all.collect()
     }
@@ -417,6 +419,40 @@ impl<'a> Drawing<'a> {
             if fits(middle) { fitting = middle } else { too_large = middle }
         }
         (fitting > 0.0).then_some(rounded_down(fitting, 3))
+    }
+
+    /// How the piece of that outline is held and moved, in the words of finite elements: else why not.
+    fn trial(&self, outline: &Profile) -> Result<Trial, String> {
+        let design = self.design;
+        let network = &design.network;
+        let section = network.beams.first().ok_or("it has no beams")?.section;
+        let poisson = section.poisson.filter(|nu| *nu < 0.5).ok_or("the file gives no Poisson's ratio below 0.5")?;
+        if design.control != Control::Travel || !network.before.is_empty() {
+            return Err("only a single travel is passed on, no forces and no loads before it".to_owned());
+        }
+        let moved = |node: usize| match network.nodes[node].support {
+            Support::Clamped => Ok(Some([0.0; 2])),
+            Support::Free if node != design.load_node => Ok(None),
+            // The guide leads where the direction of the load has the travel as its share.
+            Support::Slider { direction: guide, .. } if node == design.load_node => {
+                let share = guide[0] * design.direction[0] + guide[1] * design.direction[1];
+                Ok(Some(guide.map(|g| g * design.load_end / share)))
+            }
+            _ => Err(format!("`{}` is neither clamped nor moved along a guide", design.node_names[node])),
+        };
+        let mut grips = Vec::new();
+        for solid in &self.solids {
+            let Some(displacement_m) = moved(solid.node)? else { continue };
+            if !outline.contains(solid.middle_m) {
+                continue;
+            }
+            let copy = if solid.copies.first() == Some(&0) { "" } else { "_mirrored" };
+            grips.push(Grip { name: format!("{}{copy}", solid.name), corners_m: hull(solid.corners_m.clone()), displacement_m });
+        }
+        if grips.iter().all(|g| g.displacement_m == [0.0; 2]) {
+            return Err("nothing that moves is part of it".to_owned());
+        }
+        Ok(Trial { young_pa: section.young_pa, poisson, grips })
     }
 
     /// An error of the outline with the names of the project.

@@ -68,7 +68,7 @@ pub(crate) fn triangles(polygons: &[Polygon]) -> Result<Vec<[usize; 3]>, Error> 
 }
 
 /// For each face whether an odd number of sides separates it from what is outside of everything.
-fn inside(cdt: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<bool> {
+pub(crate) fn inside(cdt: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<bool> {
     let mut inside = vec![None; cdt.num_all_faces()];
     inside[cdt.outer_face().index()] = Some(false);
     let mut open = Vec::new();

@@ -44,6 +44,8 @@ pub enum Problem {
         name: &'static str,
         /// Its value.
         value: f64,
+        /// The largest allowed.
+        largest: f64,
     },
     /// The depth is not between a micrometre and a kilometre.
     Depth {
@@ -99,6 +101,11 @@ pub enum Problem {
     Misplaced,
     /// Too small for the mesh: fewer than three corners are left after rounding to single precision.
     TooSmall,
+    /// No mesh of finite elements can be made.
+    Mesh {
+        /// Why, in words that follow a colon.
+        what: &'static str,
+    },
 }
 
 impl fmt::Display for Boundary {
@@ -125,7 +132,7 @@ impl fmt::Display for Place {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Option { name, value } => write!(f, "{name} is {value} m, allowed are 1e-9 m to 1e-2 m"),
+            Self::Option { name, value, largest } => write!(f, "{name} is {value} m, allowed are 1e-9 m to {largest:e} m"),
             Self::Depth { depth_m } => write!(f, "a depth of {depth_m} m cannot be made"),
             Self::Diameter { diameter_m } => write!(f, "a diameter of {diameter_m} m cannot be made"),
             Self::NotFinite => write!(f, "a coordinate or knot is not finite"),
@@ -150,6 +157,7 @@ impl fmt::Display for Problem {
             Self::Meets(other) => write!(f, "touches or crosses {other}"),
             Self::Misplaced => write!(f, "lies outside the outline or inside another cutout"),
             Self::TooSmall => write!(f, "too small to be written in single precision"),
+            Self::Mesh { what } => write!(f, "no mesh of finite elements: {what}"),
         }
     }
 }

@@ -16,11 +16,13 @@ pub enum Format {
     Stl,
     /// Triangles with their unit, for printing.
     ThreeMf,
+    /// Input of CalculiX and Abaqus, for finite elements.
+    Inp,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Dxf, Self::Svg, Self::Step, Self::Stl, Self::ThreeMf];
+    pub const ALL: [Self; 6] = [Self::Dxf, Self::Svg, Self::Step, Self::Stl, Self::ThreeMf, Self::Inp];
 
     /// Its name, for people.
     pub fn name(self) -> &'static str {
@@ -30,6 +32,7 @@ impl Format {
             Self::Step => "STEP",
             Self::Stl => "STL",
             Self::ThreeMf => "3MF",
+            Self::Inp => "INP",
         }
     }
 
@@ -41,6 +44,7 @@ impl Format {
             Self::Step => "step",
             Self::Stl => "stl",
             Self::ThreeMf => "3mf",
+            Self::Inp => "inp",
         }
     }
 
@@ -52,6 +56,8 @@ impl Format {
             Self::Step => "model/step",
             Self::Stl => "model/stl",
             Self::ThreeMf => "model/3mf",
+            // Nothing is registered.
+            Self::Inp => "text/plain",
         }
     }
 }
@@ -99,7 +105,7 @@ mod tests {
         }
         assert_eq!("stp".parse(), Ok(Format::Step));
         let error = "dwg".parse::<Format>().unwrap_err();
-        assert_eq!(error.to_string(), "no format `dwg`; known are dxf, svg, step, stl, 3mf");
+        assert_eq!(error.to_string(), "no format `dwg`; known are dxf, svg, step, stl, 3mf, inp");
         assert!("".parse::<Format>().is_err());
     }
 }

@@ -99,7 +99,7 @@ pub(crate) fn twice_swept(b: &Bezier) -> f64 {
 }
 
 /// The point of a cubic at `t` in [0, 1].
-fn at(b: &Bezier, t: f64) -> Point {
+pub(crate) fn cubic_at(b: &Bezier, t: f64) -> Point {
     let (p, q, r) = (between(b[0], b[1], t), between(b[1], b[2], t), between(b[2], b[3], t));
     between(between(p, q, t), between(q, r, t), t)
 }
@@ -120,7 +120,7 @@ pub(crate) fn chords_of_cubic(b: &Bezier, chord: f64, out: &mut Vec<Point>) {
     let steps = (6.0 * bend(0).max(bend(1)) / (8.0 * chord)).sqrt().ceil().max(1.0);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and bounded by the size of parts")]
     let count = steps as usize;
-    out.extend((1..count).map(|step| at(b, step as f64 / steps)));
+    out.extend((1..count).map(|step| cubic_at(b, step as f64 / steps)));
     out.push(b[3]);
 }
 
@@ -200,7 +200,7 @@ fn strays_from(b: &Bezier, pair: &[Bulge; 2]) -> f64 {
     let second_chord = sub(b[3], joint);
     let tangent = along(first_chord, norm(first_chord) / norm(second_chord), second_chord);
     let distance = |k: u32| {
-        let point = at(b, f64::from(k) / 16.0);
+        let point = cubic_at(b, f64::from(k) / 16.0);
         let is_first = dot(sub(point, joint), tangent) < 0.0;
         if is_first { from_arc(point, b[0], pair[0]) } else { from_arc(point, joint, pair[1]) }
     };
@@ -257,7 +257,7 @@ mod tests {
         for (k, piece) in spline.beziers().iter().enumerate() {
             for s in [0.1, 0.4, 0.9] {
                 let want = textbook(&spline, ends[k] + s * (ends[k + 1] - ends[k]));
-                assert!(norm(sub(at(piece, s), want)) < 1e-14, "piece {k} at {s}");
+                assert!(norm(sub(cubic_at(piece, s), want)) < 1e-14, "piece {k} at {s}");
             }
         }
         for t in [0.4, 0.3] {
@@ -282,7 +282,7 @@ mod tests {
                     let straight = Bulge { to: ends[1], bulge: 0.0 };
                     for s in 1..20 {
                         let t = (k as f64 + f64::from(s) / 20.0) / steps as f64;
-                        worst = worst.max(from_arc(at(&piece, t), ends[0], straight));
+                        worst = worst.max(from_arc(cubic_at(&piece, t), ends[0], straight));
                     }
                 }
                 assert!(worst <= chord && worst > 0.1 * chord, "{worst} for {chord}");
@@ -306,7 +306,7 @@ mod tests {
                 let mut arcs = Vec::new();
                 arcs_of_cubic(&piece, chord, &mut arcs);
                 for k in 0..=4000 {
-                    let point = at(&piece, f64::from(k) / 4000.0);
+                    let point = cubic_at(&piece, f64::from(k) / 4000.0);
                     let starts = std::iter::once(piece[0]).chain(arcs.iter().map(|arc| arc.to));
                     let nearest = starts.zip(&arcs).filter(|(start, arc)| {
                         let along_chord = dot(sub(point, *start), sub(arc.to, *start)) / dot(sub(arc.to, *start), sub(arc.to, *start));
@@ -342,7 +342,7 @@ mod tests {
                 let s = between(between(q[0], q[1], t), between(q[1], q[2], t), t);
                 [3.0 * s[0], 3.0 * s[1]]
             };
-            let want = rule.integrate(|t| cross(at(&b, t), slope(t)));
+            let want = rule.integrate(|t| cross(cubic_at(&b, t), slope(t)));
             assert!((twice_swept(&b) - want).abs() < 1e-13 * want.abs().max(1.0));
         }
     }

@@ -10,6 +10,7 @@
 //! | [`Format::Step`], AP214 | exact: planes, cylinders | exact: extruded B-splines | one closed solid, product name |
 //! | [`Format::Stl`], binary | chords within [`Options::facet_error_m`] | the same | nothing |
 //! | [`Format::ThreeMf`] | chords within [`Options::facet_error_m`] | the same | unit, title |
+//! | [`Format::Inp`] | sides of quadratic triangles, their three nodes on the boundary | the same | material, grips, one step |
 //!
 //! Exact means to the digits written: 10⁻¹² mm. Corners of the two meshes lie on the boundary, rounded to single precision, which is
 //! what STL holds; both formats hold the same closed mesh.
@@ -19,9 +20,11 @@
 
 mod cap;
 mod dxf;
+mod elements;
 mod error;
 mod format;
 mod geometry;
+mod inp;
 mod mesh;
 mod shape;
 mod step;
@@ -43,12 +46,14 @@ pub struct Options {
     pub arc_error_m: f64,
     /// Largest distance between a curve and the chords that stand for it in STL and 3MF, m; 10⁻⁹ to 10⁻².
     pub facet_error_m: f64,
+    /// Length of the sides of finite elements, m; 10⁻⁹ to 1. Without it, a quarter of the thinnest wall.
+    pub element_m: Option<f64>,
 }
 
 impl Default for Options {
-    /// Arcs within 0.001 mm, facets within 0.005 mm.
+    /// Arcs within 0.001 mm, facets within 0.005 mm, elements as the thinnest wall has them.
     fn default() -> Self {
-        Self { arc_error_m: 1e-6, facet_error_m: 5e-6 }
+        Self { arc_error_m: 1e-6, facet_error_m: 5e-6, element_m: None }
     }
 }
 
@@ -57,10 +62,12 @@ impl Default for Options {
 /// # Errors
 /// When the part is none that could be made, or an option is out of its range: what is wrong, and where.
 pub fn write(part: &Part, format: Format, options: &Options) -> Result<Vec<u8>, Error> {
-    let allowed = 1e-9..=1e-2;
-    for (name, error_m) in [("arc_error_m", options.arc_error_m), ("facet_error_m", options.facet_error_m)] {
-        if !allowed.contains(&error_m) {
-            return Err(Error { place: Place::Options, problem: Problem::Option { name, value: error_m } });
+    let element_m = options.element_m.unwrap_or(1e-2);
+    for (name, value, largest) in
+        [("arc_error_m", options.arc_error_m, 1e-2), ("facet_error_m", options.facet_error_m, 1e-2), ("element_m", element_m, 1.0)]
+    {
+        if !(1e-9..=largest).contains(&value) {
+            return Err(Error { place: Place::Options, problem: Problem::Option { name, value, largest } });
         }
     }
     let shape = shape::Shape::new(part)?;
@@ -72,6 +79,7 @@ pub fn write(part: &Part, format: Format, options: &Options) -> Result<Vec<u8>, 
     let text = match format {
         Format::Dxf => dxf::write(part, &shape, options.arc_error_m * shape::MM_PER_M),
         Format::Svg => svg::write(part, &shape),
+        Format::Inp => inp::write(part, &shape, options.element_m)?,
         _ => step::write(part, &shape),
     };
     Ok(text.into_bytes())

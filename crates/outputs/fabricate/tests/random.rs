@@ -96,7 +96,7 @@ proptest! {
     #[test]
     fn no_part_makes_a_writer_panic(part in any_part()) {
         for format in Format::ALL {
-            let _ = write(&part, format, &Options { arc_error_m: 1e-4, facet_error_m: 1e-4 });
+            let _ = write(&part, format, &Options { arc_error_m: 1e-4, facet_error_m: 1e-4, element_m: Some(1e-3) });
         }
     }
 }

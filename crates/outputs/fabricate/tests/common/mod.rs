@@ -72,6 +72,7 @@ pub fn part(name: &str, depth_m: f64, outline: Profile) -> Part {
         holes: Vec::new(),
         fillets: None,
         notes: Vec::new(),
+        trial: Err("a sample".to_owned()),
     }
 }
 
