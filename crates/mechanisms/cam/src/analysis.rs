@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use forcewright_base::maths;
+use forcewright_elements::hertz::{LIFE_CYCLES, Life, Solid, line_contact, surface_life};
 
 use crate::cut::{Cut, CutError, SIDES};
 use crate::design::Design;
@@ -206,8 +207,59 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     forces(design, behaviour, &mut m);
     extents(behaviour, &mut m);
     contact(behaviour, &mut m);
+    pressure(design, behaviour, &mut m);
+    profile(behaviour, &mut m);
     moving(behaviour, &mut m);
     m
+}
+
+/// Pressure between rollers and cam, and how long the surfaces endure it.
+fn pressure(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
+    let solid = |material: &Option<crate::design::Material>| {
+        let material = material.as_ref()?;
+        Some(Solid { young_modulus_pa: material.young_pa?, poisson_ratio: material.poisson? })
+    };
+    let [cam, roller] = &design.materials;
+    let (Some(solids), Some(width_m)) = (solid(cam).zip(solid(roller)), design.built.thickness_m) else { return };
+    let sense = behaviour.mechanism.springs.sense();
+    let r = behaviour.mechanism.roller_m;
+    let mut most = 0.0_f64;
+    for station in &behaviour.window {
+        for side in 0..SIDES {
+            let curvature = curvature_per_m(&station.pose.places[side], sense);
+            // The cam's own radius is that of the path less the roller's; a straight path has a straight cam.
+            let own_m = if curvature.abs() < 1e-9 { f64::INFINITY } else { 1.0 / curvature - r };
+            let normal = [station.up, station.down].iter().map(|i| i.sides[side].normal_n).fold(0.0, f64::max);
+            match line_contact(normal / width_m, [own_m, r], [solids.0, solids.1]) {
+                Ok(contact) => most = most.max(contact.pressure_pa),
+                // A corner, or no line of contact: nothing is said.
+                Err(_) => return,
+            }
+        }
+    }
+    m.set("hertz_pressure_max", most);
+    let life = |material: &Option<crate::design::Material>| surface_life(most, material.as_ref()?.brinell?);
+    let cycles = |life: Life| match life {
+        Life::Shorter => LIFE_CYCLES[0],
+        Life::Cycles(cycles) => cycles,
+        Life::Longer => LIFE_CYCLES[1],
+    };
+    if let (Some(a), Some(b)) = (life(cam), life(roller)) {
+        m.set("contact_life", cycles(a).min(cycles(b)));
+    }
+}
+
+/// How far the profile is from the one that was meant.
+fn profile(behaviour: &Behaviour, m: &mut Measured) {
+    let errors: Vec<f64> = behaviour
+        .window
+        .iter()
+        .flat_map(|s| (0..SIDES).filter_map(|side| behaviour.mechanism.paths[side].error_m(s.pose.lambda_m[side])))
+        .collect();
+    if !errors.is_empty() {
+        m.set("profile_error_rms", (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt());
+        m.set("profile_error_max", errors.iter().fold(0.0, |m: f64, e| m.max(e.abs())));
+    }
 }
 
 /// Width and height over the stroke.

@@ -2,6 +2,7 @@
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::judge::Comparison;
+use forcewright_elements::hertz::first_yield_pressure_pa;
 use forcewright_model::{Check, Sense};
 
 use crate::analysis::{Behaviour, Measured, Station};
@@ -25,6 +26,7 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.extend(context.contact());
     all.extend(context.slack());
     all.extend(context.rolling());
+    all.extend(context.pressure());
     all
 }
 
@@ -162,6 +164,8 @@ impl Context<'_> {
                 let Some(bound) = bound else { continue };
                 let base = self.base("CAM012", info.name, &format!("{} ({suffix})", info.name), info.name);
                 let missing = match info.name {
+                    "contact_life" => "give `brinell` of both materials, steels of 100 to 400, and what the pressure needs".to_owned(),
+                    "profile_error_rms" | "profile_error_max" => "the profile has no errors; give `errors.measured_profile`".to_owned(),
                     "hertz_pressure_max" => "give `material.cam`, `material.roller` and `design.cam_thickness`".to_owned(),
                     "force_deviation" => "no force is required; give `requirements.force`".to_owned(),
                     name if name.contains("motion") || name.starts_with("peak") => "there is no motion; give `[motion]`".to_owned(),
@@ -279,6 +283,30 @@ impl Context<'_> {
         );
         let basis = "a cable can only pull: the force must not fall below zero; the margin is relative to the mean force at rest";
         Some(Comparison { required: false, limit: Some(0.0), sense: Sense::AtLeast, scale, fix, basis: basis.to_owned(), ..base }.judge())
+    }
+
+    /// CAM010: nothing yields below the contact.
+    fn pressure(&self) -> Option<Check> {
+        let allowed = |m: &Option<crate::design::Material>| {
+            let m = m.as_ref()?;
+            first_yield_pressure_pa(m.yield_pa?, m.poisson?)
+        };
+        let [cam, roller] = &self.design.materials;
+        if cam.is_none() && roller.is_none() {
+            return None;
+        }
+        let limit = allowed(cam).zip(allowed(roller)).map(|(a, b)| a.min(b));
+        let base = self.base("CAM010", "pressure", "Pressure between roller and cam", "hertz_pressure_max");
+        let fix = match (self.measured.get("hertz_pressure_max"), limit) {
+            (Some(found), Some(limit)) => format!(
+                "the pressure falls with the root of the width: a cam {} times as thick carries it; larger rollers and harder materials help too",
+                format_number((found / limit) * (found / limit), 3)
+            ),
+            _ => String::new(),
+        };
+        let missing = "give `material.cam` and `material.roller` with their yield stress and Poisson's ratio, and `design.cam_thickness`; on a corner of the cam there is no such pressure".to_owned();
+        let basis = "largest Hertzian pressure over the window against that of first yield below the surface, 1.79 σ_y for ν = 0.3 (Johnson 1985, 6.1)";
+        Some(Comparison { required: false, limit, missing, fix, basis: basis.to_owned(), ..base }.judge())
     }
 
     /// CAM009: friction needed for rolling against what is there.

@@ -13,10 +13,11 @@ use forcewright_elements::materials;
 
 use crate::cut::{Cut, CutError, CutSide, Purpose, SIDES};
 use crate::law::ForceLaw;
+use crate::measured::{Measured as MeasuredProfile, RandomProfile, together};
 use crate::mechanism::{Bodies, Mechanism, SpringMass};
 use crate::motion::{Law, Motion};
 use crate::parts::Making;
-use crate::path::{Flaws, SidePath};
+use crate::path::{Flaws, NormalError, SidePath};
 use crate::spec::{self, Spec};
 use crate::springs::{Bank, Spring};
 
@@ -82,6 +83,10 @@ pub struct Built {
     pub offset_m: [f64; SIDES],
     /// Shift of both along the travel, m.
     pub height_m: f64,
+    /// What was measured of the profiles.
+    pub measured: Option<Arc<MeasuredProfile>>,
+    /// A random error of the profiles.
+    pub random: Option<RandomProfile>,
 }
 
 /// A material for the contact.
@@ -97,6 +102,8 @@ pub struct Material {
     pub yield_pa: Option<f64>,
     /// Density, kg/m³.
     pub density_kg_per_m3: Option<f64>,
+    /// Brinell hardness.
+    pub brinell: Option<f64>,
     /// Keys of the works that catalogue values were taken from.
     pub sources: Vec<&'static str>,
 }
@@ -149,7 +156,7 @@ impl Design {
                 turn_rad: built.turn_rad[side] + tilt,
                 shift_m: [built.offset_m[side], built.height_m],
                 swell_m: built.roller_m - self.cut_roller_m,
-                ..Flaws::default()
+                error: built.profile_error(side),
             }
         };
         Mechanism {
@@ -162,6 +169,14 @@ impl Design {
             gravity_m_per_s2: built.gravity_m_per_s2,
             rise_m: cut.rise_m(0),
         }
+    }
+}
+
+impl Built {
+    /// What the profile of a side deviates along its normal.
+    fn profile_error(&self, side: usize) -> Option<Arc<dyn NormalError>> {
+        let measured = self.measured.as_ref().and_then(|m| m.errors[side].clone()).map(|e| e as Arc<dyn NormalError>);
+        together(measured, self.random.and_then(|r| r.of(side)))
     }
 }
 
@@ -200,7 +215,11 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     if diagnostics.has_errors() {
         return None;
     }
-    let built = built_of(spec, springs, extension, (roller_m, arm?))?;
+    let mut built = built_of(spec, springs, extension, (roller_m, arm?))?;
+    built.measured = profile::measured_of(spec, &cut, roller_m, diagnostics);
+    if diagnostics.has_errors() {
+        return None;
+    }
     Some(Design {
         title: spec.header.title.as_ref().map_or_else(|| "Cam mechanism".to_owned(), |t| t.value.clone()),
         purpose,
@@ -252,6 +271,8 @@ fn built_of(spec: &Spec, springs: Vec<Spring>, extension: bool, (roller_m, arm_m
         ],
         offset_m: [sum(&errors.profile_offset, &errors.profile_offset_right), sum(&errors.profile_offset, &errors.profile_offset_left)],
         height_m: mass(&errors.profile_height),
+        measured: None,
+        random: random_of(spec),
     })
 }
 
@@ -266,6 +287,16 @@ fn making_of(spec: &Spec, roller_m: f64) -> Option<Making> {
         brace_width_m: si(&parts.brace_width).unwrap_or(2.5 * pin_m),
         brace_thickness_m: si(&parts.brace_thickness).unwrap_or(0.5 * pin_m),
         hole_m: si(&parts.hole),
+    })
+}
+
+fn random_of(spec: &Spec) -> Option<RandomProfile> {
+    let random = &spec.errors.random_profile;
+    random.present.as_ref()?;
+    Some(RandomProfile {
+        deviation_m: si(&random.deviation)?,
+        correlation_m: si(&random.correlation_length)?,
+        seed: random.seed.as_ref().map_or(1, |s| u64::from(s.value)),
     })
 }
 
@@ -472,6 +503,7 @@ fn fill(material: &mut spec::Material, diagnostics: &mut Diagnostics) -> Materia
         poisson: si(&material.poisson_ratio),
         yield_pa: si(&material.yield_stress),
         density_kg_per_m3: si(&material.density),
+        brinell: si(&material.brinell),
         sources,
     }
 }

@@ -42,6 +42,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "Tangential over normal force between roller and cam, the largest over stroke and directions. More than the friction that is there (`design.friction`), and the rollers slide instead of rolling.",
     ),
     code(
+        "CAM010",
+        "pressure between roller and cam",
+        "Largest pressure of the line contact between roller and cam over the window (Hertz; K. L. Johnson, Contact Mechanics, 1985): p² = w E*/(π R) with the load per width w, 1/R = 1/r + 1/(ϱ − r), 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. Nothing yields below about 1.79 times the yield stress, a little below the surface. On the corner of an undercut cam there is no line contact and no such pressure: begin the window beyond it.\n\n`contact_life` is by the surface strength of steels after their hardness (`material.cam.brinell`); see docs/theory/elements.md.",
+    ),
+    code(
         "CAM011",
         "force error of the arcs",
         "A cam is cut along arcs that share their tangents, within `parts.chord_error` of the exact profile. The force follows the slope of the deviation: δF = d(P δL)/ds, with P the force of the springs and δL the lengthening of the springs by it. The check compares the largest |δF|/F with a tenth of the force band.",
@@ -70,8 +75,14 @@ pub(crate) const CODES: &[Explanation] = &[
     code("E0609", "the cam cannot be drawn", "The profile could not be fitted with arcs within `parts.chord_error`, or the cam cannot be cut at all."),
     code("E0630", "a synthesis needs more", "A synthesis of a cam mechanism needs the force (`requirements.force` with its band, or a profile) and the stroke (`requirements.stroke`). What it may use stands in `[synthesise]`: the room, the springs of a catalogue, rollers, the rolling resistance."),
     code("E0631", "a row of the springs' file is no spring", "Each row of `synthesise.springs_file` is an extension spring: rate, rest length, largest length above it, and mass."),
+    code(
+        "E0632",
+        "measured points that are not those of the cam",
+        "`errors.measured_profile` takes points on the surface of the cam that was made. They are brought to the designed profile by a rigid motion, found by iterative closest points with Tukey's weights (docs/theory/curves.md); what is left along the normal is smoothed and laid on the exact path. Too few points, points all on one short piece, or points far from the design cannot be used. Give coordinates near those of the drawing: x to the right of the axis, y along the travel, the origin where the path of the rollers starts.",
+    ),
     code("W0601", "the window holds the undercut", "Below the undercut travel the roller turns about a corner, and the force is not the one that was wanted. Begin the window beyond it, or remove the undercut (CAM003)."),
     code("W0602", "springs are slack", "Springs shorter than their rest length (extension) or longer (compression) are computed with their straight line continued; real ones have no force there."),
     code("W0603", "the slider needs its guide", "The force across the travel grows with the distance from the axis in the direction of that distance: a slider without a guide leaves the axis. Guides carry `guide_force_max`."),
+    code("W0605", "points that do not belong to the profile", "Measured points farther than 4.685 robust standard deviations from the design are taken as outliers: dust, burrs, slips of the probe. They do not count. The report lists how many, and how far the rest is from the design."),
     code("W0604", "the rollers slide", "More tangential force than friction gives. Sliding rollers wear, and their friction is larger than computed."),
 ];

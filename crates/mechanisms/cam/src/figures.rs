@@ -85,6 +85,7 @@ pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
         });
     }
     all.extend(motion_curves(design, behaviour));
+    all.extend(crate::profile_figures::curve(design, behaviour));
     all
 }
 
@@ -130,6 +131,7 @@ pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measure
     all.extend(motion_figure(design, behaviour, measured));
     all.push(curvature_figure(design, behaviour));
     all.push(contact_figure(design, behaviour));
+    all.extend(crate::profile_figures::figure(design, behaviour));
     all
 }
 

@@ -5,7 +5,7 @@ use forcewright_contract::metrics::{MetricInfo, Metrics, metric};
 
 /// The metrics of this family.
 #[derive(Debug, Default)]
-pub struct CamMetrics;
+pub(crate) struct CamMetrics;
 
 impl Metrics for CamMetrics {
     const ALL: &'static [MetricInfo] = METRICS;
@@ -53,7 +53,7 @@ pub const METRICS: &[MetricInfo] = &[
     metric("contact_force_min", Dimension::Force, true, "Smallest force between a roller and the cam over the stroke; below zero it lifts off."),
     metric("brace_tension_max", Dimension::Force, false, "Largest tension of a brace over the stroke."),
     metric("brace_tension_min", Dimension::Force, false, "Smallest tension of a brace over the stroke; below zero a cable goes slack."),
-    metric("hertz_pressure_max", Dimension::Stress, true, "Largest pressure between roller and cam (Hertz, line contact)."),
+    metric("hertz_pressure_max", Dimension::Stress, true, "Largest pressure between roller and cam over the window (Hertz, line contact)."),
     metric("friction_needed_max", Dimension::Ratio, false, "Largest tangential over normal force between roller and cam: rolling needs so much friction."),
     metric("guide_force_max", Dimension::Force, false, "Largest force across the travel that the guide of the slider carries."),
     metric(
@@ -66,6 +66,9 @@ pub const METRICS: &[MetricInfo] = &[
     metric("width", Dimension::Length, true, "Largest width over the stroke, rollers included."),
     metric("height", Dimension::Length, true, "From the lowest roller to the highest one or the slider's joint, over the stroke, a roller's radius more at the top."),
     metric("cam_length", Dimension::Length, false, "Extent of the cam along the travel, without its base."),
+    metric("profile_error_rms", Dimension::Length, false, "Root mean square of the deviation of the profile along its normal, both sides, over the window."),
+    metric("profile_error_max", Dimension::Length, false, "Largest deviation of the profile along its normal, over the window."),
+    metric("contact_life", Dimension::Ratio, false, "Load cycles that the surfaces of cam and rollers endure at the largest pressure, 1e4 to 1e10."),
     metric("peak_force_ratio", Dimension::Ratio, true, "Largest force in the motion over the quasi-static one at the same place, minus one."),
     metric(
         "peak_force_ratio_to",

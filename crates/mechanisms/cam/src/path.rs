@@ -17,12 +17,6 @@ pub trait NormalError: Send + Sync + std::fmt::Debug {
     fn at(&self, arc_m: f64) -> [f64; 3];
 }
 
-/// A path that was measured: a smooth curve over a parameter that rises with the travel.
-pub trait MeasuredPath: Send + Sync + std::fmt::Debug {
-    /// Point and its first two derivatives over λ.
-    fn at(&self, lambda_m: f64) -> Place;
-}
-
 /// A point of a path with its derivatives over λ.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
@@ -52,7 +46,6 @@ pub struct SidePath {
     side: usize,
     roller_m: f64,
     corner: Option<Corner>,
-    measured: Option<Arc<dyn MeasuredPath>>,
     error: Option<(Arc<dyn NormalError>, Arc<ArcLength>)>,
     /// Cosine and sine of the angle by which it is turned about the origin, towards the axis.
     turn: Vector,
@@ -64,7 +57,7 @@ pub struct SidePath {
 
 /// Arc length of the path as designed, by λ: only errors of the profile need it.
 #[derive(Debug)]
-struct ArcLength {
+pub(crate) struct ArcLength {
     /// λ, m; arc length, m; its slope.
     rows: Vec<[f64; 3]>,
 }
@@ -80,8 +73,6 @@ pub struct Flaws {
     pub swell_m: f64,
     /// Deviation of the profile along its normal.
     pub error: Option<Arc<dyn NormalError>>,
-    /// The path that was measured, in place of the one that was meant.
-    pub measured: Option<Arc<dyn MeasuredPath>>,
 }
 
 /// Rows of the table of arc length.
@@ -95,13 +86,17 @@ impl SidePath {
         let (sin, cos) = maths::sin_cos(flaws.turn_rad);
         let corner = corner(&cut, side, roller_m);
         let error = flaws.error.clone().map(|error| (error, Arc::new(ArcLength::of(&cut, side))));
-        let measured = flaws.measured.clone();
-        Self { cut, side, roller_m, corner, measured, error, turn: [cos, sin], shift_m: flaws.shift_m, swell_m: flaws.swell_m }
+        Self { cut, side, roller_m, corner, error, turn: [cos, sin], shift_m: flaws.shift_m, swell_m: flaws.swell_m }
     }
 
     /// Where the cam is undercut; `None` if it is not.
     pub fn corner(&self) -> Option<&Corner> {
         self.corner.as_ref()
+    }
+
+    /// Deviation of the profile along its normal, m; `None` where it has none.
+    pub fn error_m(&self, lambda_m: f64) -> Option<f64> {
+        self.error.as_ref().map(|(error, arc)| error.at(arc.at(lambda_m))[0])
     }
 
     /// What it was cut for.
@@ -117,31 +112,32 @@ impl SidePath {
             && self.swell_m.to_bits() == other.swell_m.to_bits()
             && self.error.is_none()
             && other.error.is_none()
-            && self.measured.is_none()
-            && other.measured.is_none()
             && same(&self.turn, &other.turn)
             && same(&self.shift_m, &other.shift_m)
     }
 
     /// The point of the path as it is made.
     pub fn at(&self, lambda_m: f64) -> Place {
-        let place = if let Some(measured) = &self.measured {
-            measured.at(lambda_m)
-        } else {
-            match (&self.corner, &self.error) {
-                (Some(corner), _) if lambda_m < corner.lambda_m => self.on_corner(corner, lambda_m),
-                (_, None) if self.swell_m == 0.0 => self.designed(lambda_m),
-                (_, None) => self.deviating(lambda_m, [self.swell_m, 0.0, 0.0]),
-                (_, Some((error, arc))) => {
-                    let [e, slope, bend] = error.at(arc.at(lambda_m));
-                    self.deviating(lambda_m, [e + self.swell_m, slope, bend])
-                }
-            }
+        let place = match &self.corner {
+            Some(corner) if lambda_m < corner.lambda_m => self.on_corner(corner, lambda_m),
+            _ => self.on_profile(lambda_m),
         };
         let [cos, sin] = self.turn;
         let turned = |[x, y]: Vector| [cos * x - sin * y, sin * x + cos * y];
         let [x, y] = turned(place.at);
         Place { at: [x + self.shift_m[0], y + self.shift_m[1]], slope: turned(place.slope), bend: turned(place.bend) }
+    }
+
+    /// The path on the profile with its errors.
+    fn on_profile(&self, lambda_m: f64) -> Place {
+        match &self.error {
+            None if self.swell_m == 0.0 => self.designed(lambda_m),
+            None => self.deviating(lambda_m, [self.swell_m, 0.0, 0.0]),
+            Some((error, arc)) => {
+                let [e, slope, bend] = error.at(arc.at(lambda_m));
+                self.deviating(lambda_m, [e + self.swell_m, slope, bend])
+            }
+        }
     }
 
     /// The path as it was meant, also where the cam that it needs is undercut.
@@ -153,14 +149,19 @@ impl SidePath {
 
     /// The roller turns about the corner: a circle that continues the path without a kink.
     fn on_corner(&self, corner: &Corner, lambda_m: f64) -> Place {
-        let join = if self.swell_m == 0.0 { self.designed(corner.lambda_m) } else { self.deviating(corner.lambda_m, [self.swell_m, 0.0, 0.0]) };
-        let from = [join.at[0] - corner.at[0], join.at[1] - corner.at[1]];
+        let join = self.on_profile(corner.lambda_m);
+        let sense = self.cut.purpose().springs.sense();
+        // The corner lies where the profile with its errors ends, a roller's radius behind the path.
+        let [_, normal] = frame(&join, sense);
+        let radius = self.roller_m + self.swell_m;
+        let from = [radius * normal[0], radius * normal[1]];
+        let corner_at = [join.at[0] - from[0], join.at[1] - from[1]];
         let speed = maths::hypot(join.slope[0], join.slope[1]);
-        let rate = speed / (self.roller_m + self.swell_m) * (from[0] * join.slope[1] - from[1] * join.slope[0]).signum();
+        let rate = speed / radius * (from[0] * join.slope[1] - from[1] * join.slope[0]).signum();
         let (sin, cos) = maths::sin_cos(rate * (lambda_m - corner.lambda_m));
         let arm = [cos * from[0] - sin * from[1], sin * from[0] + cos * from[1]];
         Place {
-            at: [corner.at[0] + arm[0], corner.at[1] + arm[1]],
+            at: [corner_at[0] + arm[0], corner_at[1] + arm[1]],
             slope: [-rate * arm[1], rate * arm[0]],
             bend: [-rate * rate * arm[0], -rate * rate * arm[1]],
         }
@@ -225,7 +226,7 @@ pub(crate) fn corner(cut: &Cut, side: usize, roller_m: f64) -> Option<Corner> {
 }
 
 impl ArcLength {
-    fn of(cut: &Cut, side: usize) -> Self {
+    pub(crate) fn of(cut: &Cut, side: usize) -> Self {
         let [from, to] = cut.range_m();
         let end = to + 0.1 * (to - from);
         let speed = |lambda: f64| {
@@ -242,7 +243,7 @@ impl ArcLength {
         Self { rows }
     }
 
-    fn at(&self, lambda_m: f64) -> f64 {
+    pub(crate) fn at(&self, lambda_m: f64) -> f64 {
         let i = self.rows.partition_point(|r| r[0] <= lambda_m).clamp(1, self.rows.len() - 1);
         let ([a, sa, va], [b, sb, vb]) = (self.rows[i - 1], self.rows[i]);
         let h = b - a;

@@ -71,6 +71,7 @@ pub(crate) struct Material {
     pub poisson_ratio: Slot<Quantity>,
     pub yield_stress: Slot<Quantity>,
     pub density: Slot<Quantity>,
+    pub brinell: Slot<Quantity>,
 }
 
 /// Where it works.
@@ -165,6 +166,24 @@ pub(crate) struct Errors {
     pub profile_offset_right: Slot<Quantity>,
     pub profile_offset_left: Slot<Quantity>,
     pub profile_height: Slot<Quantity>,
+    pub measured_profile: Section<MeasuredProfile>,
+    pub random_profile: Section<RandomProfile>,
+}
+
+/// Points measured on a cam.
+#[derive(Debug, Default)]
+pub(crate) struct MeasuredProfile {
+    pub file: Slot<DataFile>,
+    pub side: Slot<&'static str>,
+    pub noise: Slot<Quantity>,
+}
+
+/// A random error of the profile.
+#[derive(Debug, Default)]
+pub(crate) struct RandomProfile {
+    pub deviation: Slot<Quantity>,
+    pub correlation_length: Slot<Quantity>,
+    pub seed: Slot<u32>,
 }
 
 /// What happens to it.
@@ -204,6 +223,13 @@ pub(crate) const LAWS: &[Word] = &[
 pub(crate) const GUIDES: &[Word] = &[
     Word { word: "rigid", doc: "on a straight line" },
     Word { word: "free", doc: "pulled along the travel, free to move sideways" },
+];
+/// Sides that were measured.
+pub(crate) const SIDES: &[Word] = &[
+    Word { word: "both", doc: "both in one file, told apart by the sign of x" },
+    Word { word: "right", doc: "the right one; the left one is as designed" },
+    Word { word: "left", doc: "the left one; the right one is as designed" },
+    Word { word: "mirrored", doc: "the right one; the left one is taken as its mirror image" },
 ];
 /// How the springs' mass moves.
 pub(crate) const SPRING_MASSES: &[Word] = &[
@@ -291,6 +317,7 @@ impl Describe for Material {
         v.quantity(&Param::new("poisson_ratio", "Poisson's ratio ν.").within(0.0, 0.5), &mut self.poisson_ratio);
         v.quantity(&Param::new("yield_stress", "Yield stress σ_y.").of(Dimension::Stress).above(0.0, 1e11), &mut self.yield_stress);
         v.quantity(&Param::new("density", "Density.").of(Dimension::Density).above(0.0, 3e4), &mut self.density);
+        v.quantity(&Param::new("brinell", "Brinell hardness of a steel, a bare number: for the life of its surface.").above(0.0, 1000.0), &mut self.brinell);
     }
 }
 
@@ -424,6 +451,28 @@ impl Describe for Errors {
         v.quantity(&shift("profile_offset_right", "The right profile shifted outwards, added to the above."), &mut self.profile_offset_right);
         v.quantity(&shift("profile_offset_left", "The left profile shifted outwards, added to the above."), &mut self.profile_offset_left);
         v.quantity(&shift("profile_height", "Both profiles shifted along the travel."), &mut self.profile_height);
+        self.measured_profile.describe(v, &Param::new("measured_profile", "Points measured on the cam that was made: they take the place of the designed profile."));
+        self.random_profile.describe(v, &Param::new("random_profile", "A random error of the profile, as a process leaves it."));
+    }
+}
+
+impl Describe for MeasuredProfile {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let file = "Points on the surface, a CSV file: `x / mm, y / mm`, in coordinates near those of the drawing; their rigid motion is found.";
+        v.file(&Param::new("file", file).required(), &mut self.file);
+        v.choice(&Param::new("side", "What was measured.").default("both"), SIDES, &mut self.side);
+        let noise = "Standard deviation of the measurement along the normal; by default it is estimated.";
+        v.quantity(&length("noise", noise).within(1e-9, 1e-2), &mut self.noise);
+    }
+}
+
+impl Describe for RandomProfile {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let deviation = length("deviation", "Standard deviation along the normal.").within(0.0, 1e-2);
+        v.quantity(&deviation.required(), &mut self.deviation);
+        let correlation = length("correlation_length", "Length along the profile over which deviations keep together.");
+        v.quantity(&correlation.within(1e-4, 1.0).required(), &mut self.correlation_length);
+        v.count(&Param::new("seed", "Which draw.").within(0.0, 1e9).default("1"), &mut self.seed);
     }
 }
 

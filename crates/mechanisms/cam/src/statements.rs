@@ -48,7 +48,7 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
         SpringMass::Bar => "The springs' mass moves as a bar between the axles: half of it along the travel, a sixth outwards with each roller.",
         SpringMass::Halves => "Half of the springs' mass sits on each roller.",
     };
-    vec![
+    let mut all = vec![
         statement("Cam", path),
         statement(
             "Forces",
@@ -59,7 +59,9 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
             "Window",
             "Means, standard deviations and the loop are integrals over the travel of the window by Simpson's rule on 400 panels; extremes are taken at their ends and middles.",
         ),
-    ]
+    ];
+    all.extend(crate::profile_figures::statement(design));
+    all
 }
 
 /// What is not modelled.
@@ -135,6 +137,7 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             ),
         });
     }
+    all.extend(crate::profile_figures::warning(design));
     if let (Some(friction), Some(needed)) = (design.friction, measured.get("friction_needed_max"))
         && needed > friction
     {

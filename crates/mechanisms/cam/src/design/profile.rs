@@ -1,5 +1,7 @@
 //! What the cam was cut for, and force profiles.
 
+use std::sync::Arc;
+
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::units::{Dimension, Quantity};
 use forcewright_contract::data::{Column, DataFile, rows};
@@ -7,8 +9,9 @@ use forcewright_contract::describe::{Located, Slot};
 
 use super::springs::table_of;
 use super::{cut_sides, exclude, missing, place_of, si};
-use crate::cut::Purpose;
+use crate::cut::{Cut, Purpose};
 use crate::law::{ForceLaw, LawError};
+use crate::measured::{Measured, Points, measured};
 use crate::spec::Spec;
 use crate::springs::{Bank, Spring, SpringLaw};
 
@@ -65,6 +68,42 @@ fn wanted(spec: &Spec, place: Span, diagnostics: &mut Diagnostics) -> Option<For
         diagnostics.push(missing(place, "the force", "give `for_force = \"50 N\"`, `for_profile = [[\"0 mm\", \"40 N\"], [\"240 mm\", \"60 N\"]]` or `for_profile_file`"));
     }
     law_of(&profile.for_profile, &profile.for_profile_file, diagnostics)
+}
+
+/// Points of a measured cam.
+const MOST_MEASURED: usize = 20_000;
+
+/// What was measured of the cam; `None` if nothing was, or after an error.
+pub(super) fn measured_of(spec: &Spec, cut: &Cut, roller_m: f64, diagnostics: &mut Diagnostics) -> Option<Arc<Measured>> {
+    let section = &spec.errors.measured_profile;
+    let file = section.file.as_ref()?;
+    let column = |name| Column { name, dimension: Dimension::Length };
+    let found = rows(&file.value, &[column("x"), column("y")], MOST_MEASURED, diagnostics)?;
+    let mut points = Points { noise_m: si(&section.noise), ..Points::default() };
+    let word = section.side.as_ref().map_or("both", |s| s.value);
+    for [x, y] in found {
+        let at = [x.si, y.si];
+        match word {
+            "right" => points.sides_m[0].push(at),
+            "left" => points.sides_m[1].push(at),
+            "mirrored" => {
+                points.sides_m[0].push(at);
+                points.sides_m[1].push([-x.si, y.si]);
+            }
+            _ => points.sides_m[usize::from(x.si < 0.0)].push(at),
+        }
+    }
+    match measured(cut, roller_m, &points) {
+        Ok(measured) => Some(Arc::new(measured)),
+        Err(error) => {
+            diagnostics.push(
+                Diagnostic::error("E0632", file.span, format!("these points are not those of the cam: {error}"))
+                    .label("measured here")
+                    .help("points lie on the surface of the cam, in millimetres of the drawing's coordinates or nearly so, on more than a corner of it"),
+            );
+            None
+        }
+    }
 }
 
 /// A force over the travel, typed or from a file; `None` without one or after an error.
