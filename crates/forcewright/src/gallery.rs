@@ -37,6 +37,14 @@ pub const EXAMPLES: &[Example] = examples![
     "compliant/optimise-lan-box",
     "compliant/optimise-lan-equal-forces",
     "compliant/tolerance-lan-thin",
+    "cam/sanchez-2-springs",
+    "cam/sanchez-4-springs",
+    "cam/sanchez-6-springs",
+    "cam/no-undercut",
+    "cam/rising-force",
+    "cam/compensated",
+    "cam/push-springs",
+    "cam/measured-profile",
 ];
 
 macro_rules! data {
@@ -46,7 +54,7 @@ macro_rules! data {
 }
 
 /// Tables of data that examples name: file names and texts.
-const DATA: &[(&str, &str)] = data!["compliant": "cam-5mm.csv", "cam-3mm.csv"];
+const DATA: &[&[(&str, &str)]] = &[data!["compliant": "cam-5mm.csv", "cam-3mm.csv"], data!["cam": "measured-cam.csv"]];
 
 /// An example by its name, with or without its family.
 pub fn find(name: &str) -> Option<&'static Example> {
@@ -68,7 +76,7 @@ impl Example {
 
     /// The tables of data that it names, in its variants too: file names and texts.
     pub fn data(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        DATA.iter().filter(|(name, _)| self.text.contains(&format!("\"{name}\""))).copied()
+        DATA.iter().copied().flatten().filter(|(name, _)| self.text.contains(&format!("\"{name}\""))).copied()
     }
 
     /// The example that this one extends, if it does.
