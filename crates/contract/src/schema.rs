@@ -236,8 +236,7 @@ impl Visitor for Listing {
     }
     fn pairs(&mut self, param: &Param, first: Dimension, most: usize, _: &mut Slot<Vec<Located<[Quantity; 2]>>>) {
         let (name, with) = (first.name(), param.dimension.name());
-        let takes =
-            format!("at most {most} pairs of {name} and {with}, `[[\"{}\", \"{}\"]]`", first.example(), param.dimension.example());
+        let takes = format!("at most {most} pairs of {name} and {with}, `[[\"{}\", \"{}\"]]`", first.example(), param.dimension.example());
         self.row(param, &takes);
     }
     fn point(&mut self, param: &Param, _: &mut Slot<[Quantity; 2]>) {

@@ -90,7 +90,15 @@ impl Behaviour {
     /// Mean and standard deviation over the window, by Simpson's rule.
     pub fn moments(&self, value: impl Fn(&Station) -> f64) -> [f64; 2] {
         let n = self.window.len() - 1;
-        let weight = |i: usize| if i == 0 || i == n { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+        let weight = |i: usize| {
+            if i == 0 || i == n {
+                1.0
+            } else if i % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            }
+        };
         let total = 3.0 * n as f64;
         let mean = self.window.iter().enumerate().map(|(i, s)| weight(i) * value(s)).sum::<f64>() / total;
         let spread = self.window.iter().enumerate().map(|(i, s)| weight(i) * (value(s) - mean) * (value(s) - mean)).sum::<f64>() / total;

@@ -148,7 +148,11 @@ impl Context<'_> {
             Some(value) if self.design.built.arm_m > 0.0 => {
                 let arm = self.design.built.arm_m * limit / value;
                 let unit = Unit::parse("mm").unwrap_or_else(|_| Unit::si(Dimension::Length));
-                format!("hysteresis follows the rolling friction: an arm of {} keeps it, or rollers larger by {}", format_si(arm, &unit, 3), format_number(value / limit, 3))
+                format!(
+                    "hysteresis follows the rolling friction: an arm of {} keeps it, or rollers larger by {}",
+                    format_si(arm, &unit, 3),
+                    format_number(value / limit, 3)
+                )
             }
             _ => "reduce the rolling friction, or use larger rollers".to_owned(),
         };
@@ -182,11 +186,15 @@ impl Context<'_> {
     fn undercut(&self) -> Option<Check> {
         let path = &self.behaviour.mechanism.paths[0];
         let radius = self.measured.get("path_curvature_radius_min")?;
-        let base = self.base("CAM003", "undercut", "Undercut: roller radius against the path's radius of curvature", "path_curvature_radius_min");
+        let base =
+            self.base("CAM003", "undercut", "Undercut: roller radius against the path's radius of curvature", "path_curvature_radius_min");
         let lost = self.measured.get("undercut_travel").unwrap_or(0.0);
         let unit = &self.design.units.length;
         let diameter = format_si(2.0 * radius * (1.0 - 1e-4), unit, 4);
-        let mut fix = format!("below a travel of {} the roller rides on a corner of the cam and the force is not the one wanted: ", self.travel(lost));
+        let mut fix = format!(
+            "below a travel of {} the roller rides on a corner of the cam and the force is not the one wanted: ",
+            self.travel(lost)
+        );
         fix.push_str(&format!("a roller diameter of at most {diameter} removes the undercut"));
         if let Some(length) = self.preloaded_start() {
             fix.push_str(&format!(", and so do springs that are {} long at the start (`for_start_length`)", format_si(length, unit, 4)));
@@ -265,8 +273,10 @@ impl Context<'_> {
             }
             let base = self.base("CAM007", name, title, metric);
             let scale = self.measured.get("contact_force_max").filter(|f| *f > 0.0);
-            let fix = "the springs do not press hard enough: move more slowly, with lighter rollers, stiffer springs or more preload".to_owned();
-            let basis = "the cam can only push: the normal force must not fall below zero; the margin is relative to the largest one at rest";
+            let fix =
+                "the springs do not press hard enough: move more slowly, with lighter rollers, stiffer springs or more preload".to_owned();
+            let basis =
+                "the cam can only push: the normal force must not fall below zero; the margin is relative to the largest one at rest";
             all.push(Comparison { limit: Some(0.0), sense: Sense::AtLeast, scale, fix, basis: basis.to_owned(), ..base }.judge());
         }
         all

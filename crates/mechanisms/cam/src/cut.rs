@@ -261,9 +261,7 @@ impl Cut {
 
     /// Slopes of s and of both ξ over λ.
     fn slopes(&self, lambda_m: f64, state: State) -> State {
-        let gear = |side: usize| {
-            self.gear(side, Jet::constant(lambda_m), Jet::constant(state[0]), Jet::constant(state[1 + side])).value()
-        };
+        let gear = |side: usize| self.gear(side, Jet::constant(lambda_m), Jet::constant(state[0]), Jet::constant(state[1 + side])).value();
         let [right, left] = [gear(0), gear(1)];
         let sum = right + left;
         [right * left / sum, left / sum, right / sum]

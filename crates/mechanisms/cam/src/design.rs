@@ -367,7 +367,10 @@ fn window_of(spec: &Spec, purpose: &Purpose, diagnostics: &mut Diagnostics) -> O
     diagnostics.push(
         Diagnostic::error("E0606", window.span, "the window does not lie in the stroke")
             .label("from and to, in the travel of the slider")
-            .help(format!("give a smaller and a larger travel up to {}", spec.design.stroke.as_ref().map_or_else(String::new, |s| s.value.to_string()))),
+            .help(format!(
+                "give a smaller and a larger travel up to {}",
+                spec.design.stroke.as_ref().map_or_else(String::new, |s| s.value.to_string())
+            )),
     );
     None
 }
@@ -382,7 +385,11 @@ fn motion_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Motion> {
     let place = place_of(motion);
     let mut need = |slot: &Slot<Quantity>, name: &str, example: &str| {
         if slot.is_none() {
-            diagnostics.push(missing(place, &format!("`{name}`"), &format!("a motion has `start`, `rise` and `duration`; add `{name} = \"{example}\"`")));
+            diagnostics.push(missing(
+                place,
+                &format!("`{name}`"),
+                &format!("a motion has `start`, `rise` and `duration`; add `{name} = \"{example}\"`"),
+            ));
         }
         si(slot)
     };

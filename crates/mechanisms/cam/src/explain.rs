@@ -13,7 +13,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "force band",
         "The force on the slider, moving up and moving back, stays within `requirements.force.band` of the required level, or of the required profile, over the window. The value is the largest |F/F_required − 1|.\n\nFriction spreads the two directions apart by about μ(1 + f²)A/Δ on either side (`docs/theory/cam.md`), more at the end of the stroke than at its start; a rest length that is wrong by dL changes the force by −dL/(2Δ), most at the start.",
     ),
-    code("CAM002", "stroke", "The travel for which the cam is cut, as far as the mechanism can be assembled, against `requirements.stroke`."),
+    code(
+        "CAM002",
+        "stroke",
+        "The travel for which the cam is cut, as far as the mechanism can be assembled, against `requirements.stroke`.",
+    ),
     code(
         "CAM003",
         "undercut",
@@ -24,8 +28,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "hysteresis",
         "(Mean up − mean down)/mean of the force over the window, against `requirements.hysteresis`. With rolling resistance alone it is about 2μ times the mean of (1 + f²)A/Δ; it does not depend on the springs' rate.",
     ),
-    code("CAM005", "springs not over-extended", "Largest length of the springs over the stroke against `design.springs.max_length`. Beyond, an extension spring is deformed for good."),
-    code("CAM006", "springs not solid", "Smallest length of the springs over the stroke against `design.springs.min_length`. Below, the coils of a compression spring touch."),
+    code(
+        "CAM005",
+        "springs not over-extended",
+        "Largest length of the springs over the stroke against `design.springs.max_length`. Beyond, an extension spring is deformed for good.",
+    ),
+    code(
+        "CAM006",
+        "springs not solid",
+        "Smallest length of the springs over the stroke against `design.springs.min_length`. Below, the coils of a compression spring touch.",
+    ),
     code(
         "CAM007",
         "rollers stay on the cam",
@@ -51,7 +63,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "force error of the arcs",
         "A cam is cut along arcs that share their tangents, within `parts.chord_error` of the exact profile. The force follows the slope of the deviation: δF = d(P δL)/ds, with P the force of the springs and δL the lengthening of the springs by it. The check compares the largest |δF|/F with a tenth of the force band.",
     ),
-    code("CAM012", "limit on a metric", "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have is *not assessed*, which does not count as met."),
+    code(
+        "CAM012",
+        "limit on a metric",
+        "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have is *not assessed*, which does not count as met.",
+    ),
     code(
         "E0601",
         "the path leaves the reach of a brace",
@@ -67,22 +83,70 @@ pub(crate) const CODES: &[Explanation] = &[
         "springs give no force",
         "The springs have to store the work of the wanted force. Extension springs that are shorter at the start than without force, compression springs that are longer, cannot; nor can springs whose force falls on the way.",
     ),
-    code("E0604", "a force profile cannot be cut", "A profile is a list of travels in rising order with forces above zero. Where the force were zero or less, the springs would have to relax, and the path would turn back."),
-    code("E0605", "the motion leaves the stroke", "`motion.start` and `motion.start + motion.rise` must lie within `design.stroke`, for which the cam is cut."),
-    code("E0606", "the window does not lie in the stroke", "`requirements.window` is a smaller and a larger travel within `design.stroke`."),
-    code("E0607", "the rollers run into each other", "With compression springs the rollers come closer over the stroke. Their centres must stay a roller's radius away from the axis."),
+    code(
+        "E0604",
+        "a force profile cannot be cut",
+        "A profile is a list of travels in rising order with forces above zero. Where the force were zero or less, the springs would have to relax, and the path would turn back.",
+    ),
+    code(
+        "E0605",
+        "the motion leaves the stroke",
+        "`motion.start` and `motion.start + motion.rise` must lie within `design.stroke`, for which the cam is cut.",
+    ),
+    code(
+        "E0606",
+        "the window does not lie in the stroke",
+        "`requirements.window` is a smaller and a larger travel within `design.stroke`.",
+    ),
+    code(
+        "E0607",
+        "the rollers run into each other",
+        "With compression springs the rollers come closer over the stroke. Their centres must stay a roller's radius away from the axis.",
+    ),
     code("E0608", "a spring's curve is not one", "A curve of a spring is at least two pairs of length and force, the lengths rising."),
-    code("E0609", "the cam cannot be drawn", "The profile could not be fitted with arcs within `parts.chord_error`, or the cam cannot be cut at all."),
-    code("E0630", "a synthesis needs more", "A synthesis of a cam mechanism needs the force (`requirements.force` with its band, or a profile) and the stroke (`requirements.stroke`). What it may use stands in `[synthesise]`: the room, the springs of a catalogue, rollers, the rolling resistance."),
-    code("E0631", "a row of the springs' file is no spring", "Each row of `synthesise.springs_file` is an extension spring: rate, rest length, largest length above it, and mass."),
+    code(
+        "E0609",
+        "the cam cannot be drawn",
+        "The profile could not be fitted with arcs within `parts.chord_error`, or the cam cannot be cut at all.",
+    ),
+    code(
+        "E0630",
+        "a synthesis needs more",
+        "A synthesis of a cam mechanism needs the force (`requirements.force` with its band, or a profile) and the stroke (`requirements.stroke`). What it may use stands in `[synthesise]`: the room, the springs of a catalogue, rollers, the rolling resistance.",
+    ),
+    code(
+        "E0631",
+        "a row of the springs' file is no spring",
+        "Each row of `synthesise.springs_file` is an extension spring: rate, rest length, largest length above it, and mass.",
+    ),
     code(
         "E0632",
         "measured points that are not those of the cam",
         "`errors.measured_profile` takes points on the surface of the cam that was made. They are brought to the designed profile by a rigid motion, found by iterative closest points with Tukey's weights (docs/theory/curves.md); what is left along the normal is smoothed and laid on the exact path. Too few points, points all on one short piece, or points far from the design cannot be used. Give coordinates near those of the drawing: x to the right of the axis, y along the travel, the origin where the path of the rollers starts.",
     ),
-    code("W0601", "the window holds the undercut", "Below the undercut travel the roller turns about a corner, and the force is not the one that was wanted. Begin the window beyond it, or remove the undercut (CAM003)."),
-    code("W0602", "springs are slack", "Springs shorter than their rest length (extension) or longer (compression) are computed with their straight line continued; real ones have no force there."),
-    code("W0603", "the slider needs its guide", "The force across the travel grows with the distance from the axis in the direction of that distance: a slider without a guide leaves the axis. Guides carry `guide_force_max`."),
-    code("W0605", "points that do not belong to the profile", "Measured points farther than 4.685 robust standard deviations from the design are taken as outliers: dust, burrs, slips of the probe. They do not count. The report lists how many, and how far the rest is from the design."),
-    code("W0604", "the rollers slide", "More tangential force than friction gives. Sliding rollers wear, and their friction is larger than computed."),
+    code(
+        "W0601",
+        "the window holds the undercut",
+        "Below the undercut travel the roller turns about a corner, and the force is not the one that was wanted. Begin the window beyond it, or remove the undercut (CAM003).",
+    ),
+    code(
+        "W0602",
+        "springs are slack",
+        "Springs shorter than their rest length (extension) or longer (compression) are computed with their straight line continued; real ones have no force there.",
+    ),
+    code(
+        "W0603",
+        "the slider needs its guide",
+        "The force across the travel grows with the distance from the axis in the direction of that distance: a slider without a guide leaves the axis. Guides carry `guide_force_max`.",
+    ),
+    code(
+        "W0605",
+        "points that do not belong to the profile",
+        "Measured points farther than 4.685 robust standard deviations from the design are taken as outliers: dust, burrs, slips of the probe. They do not count. The report lists how many, and how far the rest is from the design.",
+    ),
+    code(
+        "W0604",
+        "the rollers slide",
+        "More tangential force than friction gives. Sliding rollers wear, and their friction is larger than computed.",
+    ),
 ];

@@ -39,17 +39,18 @@ pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
         return Vec::new();
     }
     let one = |name: &str, value: &dyn Fn(&Station) -> f64| over_travel(behaviour, name, value);
-    let angle = Axis { name: "pressure_angle", label: "Pressure angle".to_owned(), dimension: Dimension::Angle, display: design.units.angle.clone() };
+    let angle = Axis {
+        name: "pressure_angle",
+        label: "Pressure angle".to_owned(),
+        dimension: Dimension::Angle,
+        display: design.units.angle.clone(),
+    };
     let mut all = vec![
         Curve {
             name: "force",
             x: travel_axis(design),
             y: force_axis(design, "force", "Force F"),
-            branches: vec![
-                one("up", &|s| s.up.force_n),
-                one("down", &|s| s.down.force_n),
-                one("without_friction", &|s| s.still.force_n),
-            ],
+            branches: vec![one("up", &|s| s.up.force_n), one("down", &|s| s.down.force_n), one("without_friction", &|s| s.still.force_n)],
         },
         Curve {
             name: "spring_length",
@@ -74,7 +75,12 @@ pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
             y: force_axis(design, "guide_force", "Guide force"),
             branches: vec![one("up", &|s| s.up.guide_n), one("down", &|s| s.down.guide_n)],
         },
-        Curve { name: "pressure_angle", x: travel_axis(design), y: angle, branches: vec![one("without_friction", &|s| pressure_angle(behaviour, s))] },
+        Curve {
+            name: "pressure_angle",
+            x: travel_axis(design),
+            y: angle,
+            branches: vec![one("without_friction", &|s| pressure_angle(behaviour, s))],
+        },
     ];
     if design.free_guide {
         all.push(Curve {
@@ -92,7 +98,11 @@ pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
 fn motion_curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
     let Some(motion) = &behaviour.motion else { return Vec::new() };
     let time: Vec<f64> = motion.iter().map(|m| m.time_s).collect();
-    let branch = |name: &str, value: &dyn Fn(&Moment) -> f64| Branch { name: name.to_owned(), x: time.clone(), y: motion.iter().map(value).collect() };
+    let branch = |name: &str, value: &dyn Fn(&Moment) -> f64| Branch {
+        name: name.to_owned(),
+        x: time.clone(),
+        y: motion.iter().map(value).collect(),
+    };
     vec![
         Curve {
             name: "motion_force",
@@ -100,12 +110,7 @@ fn motion_curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
             y: force_axis(design, "force", "Force F"),
             branches: vec![branch("moving", &|m| m.moving.force_n), branch("at_rest", &|m| m.resting.force_n)],
         },
-        Curve {
-            name: "motion_travel",
-            x: time_axis(design),
-            y: travel_axis(design),
-            branches: vec![branch("moving", &|m| m.travel_m)],
-        },
+        Curve { name: "motion_travel", x: time_axis(design), y: travel_axis(design), branches: vec![branch("moving", &|m| m.travel_m)] },
         Curve {
             name: "motion_contact_force",
             x: time_axis(design),
@@ -172,7 +177,8 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
     let [from, to] = behaviour.window_m;
     plot.spans.push(VerticalSpan { from, to, label: "window".to_owned() });
     let mut caption = "The force on the slider at rest, moving along its travel and back.".to_owned();
-    if let (Some(area), Some(up), Some(down)) = (measured.get("loop_area"), measured.get("force_up_mean"), measured.get("force_down_mean")) {
+    if let (Some(area), Some(up), Some(down)) = (measured.get("loop_area"), measured.get("force_up_mean"), measured.get("force_down_mean"))
+    {
         let joule = Unit::parse("J").unwrap_or_else(|_| Unit::si(Dimension::Energy));
         caption.push_str(&format!(
             " Over the window {} up and {} down in the mean; a cycle loses {}.",
@@ -198,9 +204,9 @@ fn motion_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) ->
     ];
     let mut plot = plot(time_axis(design), force_axis(design, "force", "Force F"), all);
     plot.from_zero = true;
-    let peak = measured.get("peak_force_ratio").map_or_else(String::new, |p| {
-        format!(" At most {} % above the force at rest at the same place.", format_number(100.0 * p, 4))
-    });
+    let peak = measured
+        .get("peak_force_ratio")
+        .map_or_else(String::new, |p| format!(" At most {} % above the force at rest at the same place.", format_number(100.0 * p, 4)));
     Some(Figure {
         id: "motion",
         title: "Force in the motion".to_owned(),
@@ -255,7 +261,8 @@ fn contact_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     Figure {
         id: "contact",
         title: "Forces in the mechanism".to_owned(),
-        caption: "Normal force between roller and cam and tension of the brace, of the side that has more; force of all springs.".to_owned(),
+        caption: "Normal force between roller and cam and tension of the brace, of the side that has more; force of all springs."
+            .to_owned(),
         content: FigureContent::Plot(plot),
     }
 }

@@ -444,7 +444,9 @@ fn braces(design: &Design) -> Vec<Part> {
             fillets: None,
             trial: Err(RIGID.to_owned()),
             holes: vec![hole(0.0, "axle of the roller"), hole(length_m, "joint of the slider")],
-            notes: vec!["The distance of the holes is the brace length: it moves the force little, the two of a pair should be equal.".to_owned()],
+            notes: vec![
+                "The distance of the holes is the brace length: it moves the force little, the two of a pair should be equal.".to_owned(),
+            ],
         }
     };
     if same {

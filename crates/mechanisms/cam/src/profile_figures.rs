@@ -72,7 +72,8 @@ pub(crate) fn figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
     shown.then(|| Figure {
         id: "profile_error",
         title: "Deviation of the profile".to_owned(),
-        caption: "Along the normal, outwards, from the profile that was meant; dashed what was measured. The force follows its slope.".to_owned(),
+        caption: "Along the normal, outwards, from the profile that was meant; dashed what was measured. The force follows its slope."
+            .to_owned(),
         content: FigureContent::Plot(plot),
     })
 }

@@ -39,7 +39,9 @@ pub(crate) fn scene(design: &Design, behaviour: &Behaviour, station: &Station) -
         scale: None,
         words: ["path of the rollers", "mechanism"],
         display: design.units.length.clone(),
-        description: format!("The mechanism at a travel of {s}: cam, two rollers, springs between their axles, two braces and the slider, pulled with {force}."),
+        description: format!(
+            "The mechanism at a travel of {s}: cam, two rollers, springs between their axles, two braces and the slider, pulled with {force}."
+        ),
     }
 }
 
@@ -154,7 +156,8 @@ impl Artist<'_> {
     fn slider(&self, items: &mut Vec<Item>, station: &Station) {
         let at = station.pose.joints[0];
         let half = 0.6 * self.behaviour.mechanism.roller_m;
-        let corners = vec![[at[0] - half, at[1] - half], [at[0] + half, at[1] - half], [at[0] + half, at[1] + half], [at[0] - half, at[1] + half]];
+        let corners =
+            vec![[at[0] - half, at[1] - half], [at[0] + half, at[1] - half], [at[0] + half, at[1] + half], [at[0] - half, at[1] + half]];
         items.push(Item::Body { corners, role: Role::Rigid });
         if !self.design.free_guide {
             let kind = SupportKind::Slider { direction: [0.0, 1.0], rotates: false };

@@ -209,10 +209,8 @@ pub(crate) const ARRANGEMENTS: &[Word] = &[
     Word { word: "compression", doc: "compression springs push the rollers onto cams outside them" },
 ];
 /// In which direction the force is exact.
-pub(crate) const COMPENSATIONS: &[Word] = &[
-    Word { word: "up", doc: "while the slider moves along its travel" },
-    Word { word: "down", doc: "while it moves back" },
-];
+pub(crate) const COMPENSATIONS: &[Word] =
+    &[Word { word: "up", doc: "while the slider moves along its travel" }, Word { word: "down", doc: "while it moves back" }];
 /// Motions.
 pub(crate) const LAWS: &[Word] = &[
     Word { word: "cycloidal", doc: "s = start + rise (t/T − sin(2πt/T)/2π): no acceleration at the ends" },
@@ -220,10 +218,8 @@ pub(crate) const LAWS: &[Word] = &[
     Word { word: "uniform", doc: "at constant speed" },
 ];
 /// How the slider is guided.
-pub(crate) const GUIDES: &[Word] = &[
-    Word { word: "rigid", doc: "on a straight line" },
-    Word { word: "free", doc: "pulled along the travel, free to move sideways" },
-];
+pub(crate) const GUIDES: &[Word] =
+    &[Word { word: "rigid", doc: "on a straight line" }, Word { word: "free", doc: "pulled along the travel, free to move sideways" }];
 /// Sides that were measured.
 pub(crate) const SIDES: &[Word] = &[
     Word { word: "both", doc: "both in one file, told apart by the sign of x" },
@@ -245,10 +241,8 @@ const MOST_POINTS: usize = 500;
 const MOST_SPRINGS: usize = 32;
 
 const STUDY: &str = "it belongs to a study that this version does not have; `solve` does not need it";
-const RESERVED_SECTIONS: &[Reserved] = &[
-    Reserved { key: "measurements", instead: STUDY, ignored: true },
-    Reserved { key: "calibrate", instead: STUDY, ignored: true },
-];
+const RESERVED_SECTIONS: &[Reserved] =
+    &[Reserved { key: "measurements", instead: STUDY, ignored: true }, Reserved { key: "calibrate", instead: STUDY, ignored: true }];
 
 impl Describe for Spec {
     fn describe(&mut self, v: &mut dyn Visitor) {
@@ -317,7 +311,10 @@ impl Describe for Material {
         v.quantity(&Param::new("poisson_ratio", "Poisson's ratio ν.").within(0.0, 0.5), &mut self.poisson_ratio);
         v.quantity(&Param::new("yield_stress", "Yield stress σ_y.").of(Dimension::Stress).above(0.0, 1e11), &mut self.yield_stress);
         v.quantity(&Param::new("density", "Density.").of(Dimension::Density).above(0.0, 3e4), &mut self.density);
-        v.quantity(&Param::new("brinell", "Brinell hardness of a steel, a bare number: for the life of its surface.").above(0.0, 1000.0), &mut self.brinell);
+        v.quantity(
+            &Param::new("brinell", "Brinell hardness of a steel, a bare number: for the life of its surface.").above(0.0, 1000.0),
+            &mut self.brinell,
+        );
     }
 }
 
@@ -339,9 +336,18 @@ impl Describe for Design {
         let brace = |key, doc| length(key, doc).within(SMALLEST_M, LARGEST_M);
         v.quantity(&brace("brace_length", "Length l of the braces, joint to axle.").required(), &mut self.brace_length);
         v.quantity(&brace("brace_length_left", "Length of the left brace, where it is another."), &mut self.brace_length_left);
-        v.quantity(&Param::new("roller_diameter", "Diameter of the rollers, 2r.").diameter().within(SMALLEST_M, 1.0).required(), &mut self.roller_diameter);
-        v.quantity(&length("cam_thickness", "Thickness of the cam plate, on which the rollers bear.").within(SMALLEST_M, 1.0), &mut self.cam_thickness);
-        v.quantity(&length("stroke", "Travel s of the slider for which the cam is cut.").within(SMALLEST_M, LARGEST_M).required(), &mut self.stroke);
+        v.quantity(
+            &Param::new("roller_diameter", "Diameter of the rollers, 2r.").diameter().within(SMALLEST_M, 1.0).required(),
+            &mut self.roller_diameter,
+        );
+        v.quantity(
+            &length("cam_thickness", "Thickness of the cam plate, on which the rollers bear.").within(SMALLEST_M, 1.0),
+            &mut self.cam_thickness,
+        );
+        v.quantity(
+            &length("stroke", "Travel s of the slider for which the cam is cut.").within(SMALLEST_M, LARGEST_M).required(),
+            &mut self.stroke,
+        );
         v.quantity(
             &length("rolling_arm", "Arm of the rolling resistance: friction μ is arm over roller radius.").within(0.0, 0.1),
             &mut self.rolling_arm,
@@ -353,8 +359,11 @@ impl Describe for Design {
         );
         self.profile.describe(
             v,
-            &Param::new("profile", "What the cam was cut for: taken once, never changed by tolerances, errors or the springs mounted today.")
-                .required(),
+            &Param::new(
+                "profile",
+                "What the cam was cut for: taken once, never changed by tolerances, errors or the springs mounted today.",
+            )
+            .required(),
         );
         self.springs.describe(v, &Param::new("springs", "The springs mounted in parallel between the roller axles.").required());
         self.bodies.describe(v, &Param::new("bodies", "Masses and moments of inertia: for the motion and the weight."));
@@ -364,7 +373,8 @@ impl Describe for Design {
 impl Describe for Profile {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.quantity(&force_curve("for_force", "The constant force."), &mut self.for_force);
-        let curve = force_curve("for_profile", "Any force over the travel, above zero, straight between its points: `[[\"0 mm\", \"40 N\"], …]`.");
+        let curve =
+            force_curve("for_profile", "Any force over the travel, above zero, straight between its points: `[[\"0 mm\", \"40 N\"], …]`.");
         v.pairs(&curve, Dimension::Length, MOST_POINTS, &mut self.for_profile);
         let doc = "The same from a CSV file: travel and force, with units in the header, `travel / mm, force / N`.";
         v.file(&Param::new("for_profile_file", doc), &mut self.for_profile_file);
@@ -431,10 +441,16 @@ impl Describe for Parts {
         v.quantity(&length("chord_error", error).within(1e-8, 1e-3).default("0.1 µm"), &mut self.chord_error);
         v.quantity(&size("base", "Height of the cam plate below the start of its profile; by default a roller diameter."), &mut self.base);
         v.quantity(&size("wall", "With compression springs: material behind the profile; by default a roller diameter."), &mut self.wall);
-        v.quantity(&size("pin_diameter", "Diameter of the axles and of the holes for them; by default a quarter of that of the rollers."), &mut self.pin_diameter);
+        v.quantity(
+            &size("pin_diameter", "Diameter of the axles and of the holes for them; by default a quarter of that of the rollers."),
+            &mut self.pin_diameter,
+        );
         v.quantity(&size("brace_width", "Width of the braces; by default 2.5 axles."), &mut self.brace_width);
         v.quantity(&size("brace_thickness", "Thickness of the braces; by default half an axle."), &mut self.brace_thickness);
-        v.quantity(&size("hole", "Diameter of two mounting holes on the axis of the cam plate; without it there are none."), &mut self.hole);
+        v.quantity(
+            &size("hole", "Diameter of two mounting holes on the axis of the cam plate; without it there are none."),
+            &mut self.hole,
+        );
     }
 }
 
@@ -445,20 +461,30 @@ impl Describe for Errors {
         v.quantity(&angle("tilt", "Angle between the travel of the slider and the axis of the cam."), &mut self.tilt);
         let rotation = "Both profiles turned about the origin of the path, towards the axis: the cam narrows upwards.";
         v.quantity(&angle("profile_rotation", rotation), &mut self.profile_rotation);
-        v.quantity(&angle("profile_rotation_right", "The right profile turned alone, added to the above."), &mut self.profile_rotation_right);
+        v.quantity(
+            &angle("profile_rotation_right", "The right profile turned alone, added to the above."),
+            &mut self.profile_rotation_right,
+        );
         v.quantity(&angle("profile_rotation_left", "The left profile turned alone, added to the above."), &mut self.profile_rotation_left);
         v.quantity(&shift("profile_offset", "Both profiles shifted outwards."), &mut self.profile_offset);
-        v.quantity(&shift("profile_offset_right", "The right profile shifted outwards, added to the above."), &mut self.profile_offset_right);
+        v.quantity(
+            &shift("profile_offset_right", "The right profile shifted outwards, added to the above."),
+            &mut self.profile_offset_right,
+        );
         v.quantity(&shift("profile_offset_left", "The left profile shifted outwards, added to the above."), &mut self.profile_offset_left);
         v.quantity(&shift("profile_height", "Both profiles shifted along the travel."), &mut self.profile_height);
-        self.measured_profile.describe(v, &Param::new("measured_profile", "Points measured on the cam that was made: they take the place of the designed profile."));
+        self.measured_profile.describe(
+            v,
+            &Param::new("measured_profile", "Points measured on the cam that was made: they take the place of the designed profile."),
+        );
         self.random_profile.describe(v, &Param::new("random_profile", "A random error of the profile, as a process leaves it."));
     }
 }
 
 impl Describe for MeasuredProfile {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        let file = "Points on the surface, a CSV file: `x / mm, y / mm`, in coordinates near those of the drawing; their rigid motion is found.";
+        let file =
+            "Points on the surface, a CSV file: `x / mm, y / mm`, in coordinates near those of the drawing; their rigid motion is found.";
         v.file(&Param::new("file", file).required(), &mut self.file);
         v.choice(&Param::new("side", "What was measured.").default("both"), SIDES, &mut self.side);
         let noise = "Standard deviation of the measurement along the normal; by default it is estimated.";
@@ -490,6 +516,10 @@ impl Describe for Motion {
 
 impl Describe for Model {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        v.choice(&Param::new("spring_mass", "How the springs' mass moves with the rollers.").default("bar"), SPRING_MASSES, &mut self.spring_mass);
+        v.choice(
+            &Param::new("spring_mass", "How the springs' mass moves with the rollers.").default("bar"),
+            SPRING_MASSES,
+            &mut self.spring_mass,
+        );
     }
 }

@@ -45,7 +45,9 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
         "The path follows from equilibrium with rolling friction in one direction, eq. (2) of Sánchez-Salinas et al. in the form that is regular at the start, integrated with a method of fifth order. Derivatives come from the equation itself."
     };
     let springs = match design.built.bodies.springs {
-        SpringMass::Bar => "The springs' mass moves as a bar between the axles: half of it along the travel, a sixth outwards with each roller.",
+        SpringMass::Bar => {
+            "The springs' mass moves as a bar between the axles: half of it along the travel, a sixth outwards with each roller."
+        }
         SpringMass::Halves => "Half of the springs' mass sits on each roller.",
     };
     let mut all = vec![
@@ -74,7 +76,10 @@ pub(crate) fn limits(design: &Design) -> Vec<Statement> {
         ),
     ];
     if design.motion.is_some() {
-        all.push(statement("Contact in the motion", "The rollers are kept on the cam also where they would lift off; the check of the contact says where that is."));
+        all.push(statement(
+            "Contact in the motion",
+            "The rollers are kept on the cam also where they would lift off; the check of the contact says where that is.",
+        ));
     }
     all
 }
@@ -143,7 +148,11 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
     {
         all.push(Warning {
             code: "W0604",
-            message: format!("rolling needs a friction of {}, {} is there: the rollers slide", format_number(needed, 3), format_number(friction, 3)),
+            message: format!(
+                "rolling needs a friction of {}, {} is there: the rollers slide",
+                format_number(needed, 3),
+                format_number(friction, 3)
+            ),
         });
     }
     all

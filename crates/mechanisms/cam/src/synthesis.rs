@@ -72,10 +72,10 @@ pub(crate) fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagno
     let ((law, band), stroke) = (force?, stroke?);
     let section = &spec.synthesise;
     let millimetres = |mm: &f64| 1e-3 * mm;
-    let rollers_m = section.roller_diameters.as_ref().map_or_else(
-        || BEARINGS_MM.iter().map(millimetres).collect(),
-        |typed| typed.value.iter().map(|q| q.si).collect(),
-    );
+    let rollers_m = section
+        .roller_diameters
+        .as_ref()
+        .map_or_else(|| BEARINGS_MM.iter().map(millimetres).collect(), |typed| typed.value.iter().map(|q| q.si).collect());
     let limit = |name: &str| requirements?.limits.iter().find(|l| METRICS[l.metric].name == name)?.max;
     let asked = Asked {
         law,
@@ -83,10 +83,9 @@ pub(crate) fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagno
         stroke_m: stroke.value.si,
         window_m: design.window_m,
         hysteresis: requirements.and_then(|r| r.hysteresis),
-        room_m: section.room.as_ref().map_or(
-            [limit("width").unwrap_or(f64::INFINITY), limit("height").unwrap_or(f64::INFINITY)],
-            |room| [room.value[0].si, room.value[1].si],
-        ),
+        room_m: section.room.as_ref().map_or([limit("width").unwrap_or(f64::INFINITY), limit("height").unwrap_or(f64::INFINITY)], |room| {
+            [room.value[0].si, room.value[1].si]
+        }),
         arm_m: si(&section.rolling_arm).unwrap_or(0.0),
         offers,
         most_springs: section.springs_max.as_ref().map_or(6, |c| c.value),
@@ -173,7 +172,11 @@ impl Synthesiser for Synthesis {
     }
 
     fn relaxations(&self, slack: f64) -> Vec<Relaxation> {
-        Knob::ALL.iter().filter_map(|knob| limits::relaxed(&self.asked, *knob, slack, &self.length)).map(|(relaxation, _)| relaxation).collect()
+        Knob::ALL
+            .iter()
+            .filter_map(|knob| limits::relaxed(&self.asked, *knob, slack, &self.length))
+            .map(|(relaxation, _)| relaxation)
+            .collect()
     }
 
     fn nearest(&self) -> Vec<Proposal> {

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use forcewright_cam::{
-    Bank, Bodies, Cut, CutSide, Drive, Flaws, ForceLaw, Law, Mechanism, Motion, NormalError, Purpose, Sense, SidePath, Spring, SpringLaw, SpringMass,
+    Bank, Bodies, Cut, CutSide, Drive, Flaws, ForceLaw, Law, Mechanism, Motion, NormalError, Purpose, Sense, SidePath, Spring, SpringLaw,
+    SpringMass,
 };
 use serde_json::Value;
 
@@ -225,7 +226,8 @@ fn any_law_with_any_springs_on_unequal_sides() {
     for (springs, start) in [(springs, 0.15), (thrust, 0.29)] {
         for share in [0.5, 0.35] {
             let sides = [CutSide { brace_m: 0.25, share }, CutSide { brace_m: 0.21, share: 1.0 - share }];
-            let purpose = Purpose { law: law.clone(), springs: springs.clone(), start_length_m: start, sides, friction: 0.0, stroke_m: 0.12 };
+            let purpose =
+                Purpose { law: law.clone(), springs: springs.clone(), start_length_m: start, sides, friction: 0.0, stroke_m: 0.12 };
             let cut = Arc::new(Cut::new(purpose).expect("a cam"));
             let mut m = mechanism(&cut, springs.clone(), 0.0, [Flaws::default(), Flaws::default()]);
             m.brace_m = [0.25, 0.21];
@@ -275,7 +277,11 @@ fn profile_errors_follow_from_energy_and_lagrange_s_equation() {
         close(rest_force(&m, s, Sense::Frictionless) / slope, 1.0, 2e-7, "dE/ds");
         // F = V′ + M s̈ + M′ ṡ²/2: the part with the speed is that of the acceleration's mass, differentiated.
         let mass = |s: f64| {
-            let at = |a: f64| m.instant(&Drive { at: [s, 0.0], acceleration: [a, 0.0], ..Drive::default() }, Sense::Frictionless).expect("assembles").force_n;
+            let at = |a: f64| {
+                m.instant(&Drive { at: [s, 0.0], acceleration: [a, 0.0], ..Drive::default() }, Sense::Frictionless)
+                    .expect("assembles")
+                    .force_n
+            };
             at(1.0) - at(0.0)
         };
         let v = 0.7;

@@ -34,9 +34,7 @@ pub(super) fn purpose_of(spec: &Spec, extension: bool, diagnostics: &mut Diagnos
             if profile.for_rest_length.is_none() {
                 diagnostics.push(missing(place, "`for_rest_length`", example));
             }
-            si(&profile.for_rate)
-                .zip(si(&profile.for_rest_length))
-                .map(|(rate_n_per_m, rest_m)| SpringLaw::Linear { rate_n_per_m, rest_m })
+            si(&profile.for_rate).zip(si(&profile.for_rest_length)).map(|(rate_n_per_m, rest_m)| SpringLaw::Linear { rate_n_per_m, rest_m })
         }
     };
     let start = si(&profile.for_start_length).or(si(&profile.for_rest_length));
@@ -65,7 +63,11 @@ fn wanted(spec: &Spec, place: Span, diagnostics: &mut Diagnostics) -> Option<For
         return Some(ForceLaw::constant(force.value.si));
     }
     if profile.for_profile.is_none() && profile.for_profile_file.is_none() && !diagnostics.has_errors() {
-        diagnostics.push(missing(place, "the force", "give `for_force = \"50 N\"`, `for_profile = [[\"0 mm\", \"40 N\"], [\"240 mm\", \"60 N\"]]` or `for_profile_file`"));
+        diagnostics.push(missing(
+            place,
+            "the force",
+            "give `for_force = \"50 N\"`, `for_profile = [[\"0 mm\", \"40 N\"], [\"240 mm\", \"60 N\"]]` or `for_profile_file`",
+        ));
     }
     law_of(&profile.for_profile, &profile.for_profile_file, diagnostics)
 }
@@ -123,7 +125,9 @@ pub(super) fn law_of(typed: &Slot<Vec<Located<[Quantity; 2]>>>, file: &Slot<Data
     let (index, message, help) = match error {
         LawError::Empty => (0, "a profile needs a point", "give travel and force"),
         LawError::NotRising(i) => (i, "this travel does not lie beyond the one before it", "list the points in the order of their travel"),
-        LawError::NotPositive(i) => (i, "this force is not above zero", "the springs can only be stretched on while the force does work: give a force above zero"),
+        LawError::NotPositive(i) => {
+            (i, "this force is not above zero", "the springs can only be stretched on while the force does work: give a force above zero")
+        }
     };
     let span = points.get(index).map(|p| p.1).or(typed.as_ref().map(|t| t.span)).unwrap_or_default();
     diagnostics.push(Diagnostic::error("E0604", span, message).label("this point").help(help));

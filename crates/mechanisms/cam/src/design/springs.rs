@@ -38,7 +38,11 @@ pub(super) fn mounted(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Vec<
             (None, Some(rate)) => vec![rate.value.si; count as usize],
             (None, None) => {
                 if springs.present.is_some() {
-                    diagnostics.push(missing(place, "`rates`", "give the rate of each, `rates = [\"0.683 N/mm\", \"0.682 N/mm\"]`, or `rate` and `count`"));
+                    diagnostics.push(missing(
+                        place,
+                        "`rates`",
+                        "give the rate of each, `rates = [\"0.683 N/mm\", \"0.682 N/mm\"]`, or `rate` and `count`",
+                    ));
                 }
                 return None;
             }

@@ -12,7 +12,9 @@ use crate::springs::{Bank, Spring, SpringLaw};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Knob {
     /// Both braces, or the right one where the left one has its own.
-    Brace { left: bool },
+    Brace {
+        left: bool,
+    },
     LeftBrace,
     RollerDiameter,
     RollingArm,

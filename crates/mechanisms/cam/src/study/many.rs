@@ -75,7 +75,8 @@ impl Many {
         let cut = if knobs.cuts() { None } else { design.cut().ok() };
         let nominal = Behaviour::of(design).ok();
         let window_m = nominal.map_or([0.0, design.purpose.stroke_m], |b| b.window_m);
-        let force = |name: &str, index: usize| Output { name: name.to_owned(), unit: "N", values: index * STATIONS..(index + 1) * STATIONS };
+        let force =
+            |name: &str, index: usize| Output { name: name.to_owned(), unit: "N", values: index * STATIONS..(index + 1) * STATIONS };
         let mut outputs = vec![force("force_up", 0), force("force_down", 1), force("force", 2)];
         for (index, name) in SCALARS.iter().enumerate() {
             let unit = METRICS.iter().find(|m| m.name == *name).map_or("1", |m| m.dimension.si_symbol());
@@ -99,7 +100,15 @@ impl Many {
 
     fn of_forces(&self, values: &[f64]) -> [f64; OF_FORCES.len()] {
         let [up, down, still] = [0, 1, 2].map(|i| &values[i * STATIONS..(i + 1) * STATIONS]);
-        let weight = |i: usize| if i == 0 || i == STATIONS - 1 { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+        let weight = |i: usize| {
+            if i == 0 || i == STATIONS - 1 {
+                1.0
+            } else if i % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            }
+        };
         let total = 3.0 * (STATIONS - 1) as f64;
         let mean = |v: &[f64]| v.iter().enumerate().map(|(i, v)| weight(i) * v).sum::<f64>() / total;
         let spread = |v: &[f64], mean: f64| {

@@ -43,7 +43,8 @@ pub(super) fn task(design: &Design, knobs: Knobs, objective: &Section<Objective>
     let Some(name) = names().find(|name| *name == slot.value) else {
         let all = OBJECTIVES.iter().map(|(name, doc)| format!("`{name}`: {doc}")).collect::<Vec<_>>().join("; ");
         let help = closest(&slot.value, names()).map_or(all, |near| format!("did you mean `{near}`?"));
-        diagnostics.push(Diagnostic::error("E0315", slot.span, format!("`{}` cannot be optimised", slot.value)).label("no objective").help(help));
+        diagnostics
+            .push(Diagnostic::error("E0315", slot.span, format!("`{}` cannot be optimised", slot.value)).label("no objective").help(help));
         return None;
     };
     for (span, what) in [(objective.window.as_ref().map(|w| w.span), "window"), (objective.target.as_ref().map(|t| t.span), "target")] {
@@ -92,7 +93,15 @@ fn goal(many: &Many, name: &str) -> (Goal, Vec<Band>) {
         }
         // (Mean up − mean down) over the level wanted: Simpson's weights.
         "hysteresis" => {
-            let weight = |i: usize| if i == 0 || i == STATIONS - 1 { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+            let weight = |i: usize| {
+                if i == 0 || i == STATIONS - 1 {
+                    1.0
+                } else if i % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                }
+            };
             let level = wanted.iter().sum::<f64>() / wanted.len() as f64;
             let one = |i: usize, sign: f64| sign * weight(i) / (3.0 * last * level);
             let up = (0..STATIONS).map(|i| (i, one(i, 1.0)));

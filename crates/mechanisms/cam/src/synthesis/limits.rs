@@ -69,7 +69,9 @@ pub(super) fn relaxed(asked: &Asked, knob: Knob, slack: f64, length: &Unit) -> O
             let new = percent(other.hysteresis?);
             ("requirements.hysteresis", "hysteresis", quoted(&new), new, percent(asked.hysteresis?), false)
         }
-        Knob::Band => ("requirements.force.band", "force band", quoted(&percent(other.band)), percent(other.band), percent(asked.band), false),
+        Knob::Band => {
+            ("requirements.force.band", "force band", quoted(&percent(other.band)), percent(other.band), percent(asked.band), false)
+        }
         Knob::Stroke => {
             let new = shown(other.stroke_m);
             ("requirements.stroke", "stroke", quoted(&new), new, shown(asked.stroke_m), true)

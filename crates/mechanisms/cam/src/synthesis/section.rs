@@ -22,11 +22,16 @@ impl Describe for Synthesise {
         let length = |key, doc| Param::new(key, doc).of(Dimension::Length);
         let room = "Width and height of the room for the mechanism over its whole stroke, rollers included.";
         v.point(&length("room", room).above(0.0, 10.0), &mut self.room);
-        v.quantity(&length("rolling_arm", "Arm of the rolling resistance of the rollers.").within(0.0, 0.1).default("0.03 mm"), &mut self.rolling_arm);
+        v.quantity(
+            &length("rolling_arm", "Arm of the rolling resistance of the rollers.").within(0.0, 0.1).default("0.03 mm"),
+            &mut self.rolling_arm,
+        );
         let file = "Springs that there are, a CSV file: `rate / N/mm, rest length / mm, largest length / mm, mass / g`. Without it any rate can be had.";
         v.file(&Param::new("springs_file", file), &mut self.springs_file);
         v.quantity(
-            &Param::new("extension_max", "Without `springs_file`: largest length over rest length of a spring.").within(1.05, 5.0).default("2"),
+            &Param::new("extension_max", "Without `springs_file`: largest length over rest length of a spring.")
+                .within(1.05, 5.0)
+                .default("2"),
             &mut self.extension_max,
         );
         v.count(&Param::new("springs_max", "Most springs side by side.").within(1.0, 32.0).default("6"), &mut self.springs_max);

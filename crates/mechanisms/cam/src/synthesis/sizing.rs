@@ -193,8 +193,7 @@ fn looked_at(asked: &Asked, size: Size) -> Option<Size> {
     if height_m > asked.room_m[1] {
         return None;
     }
-    let bodies =
-        Bodies { slider_kg: 0.0, brace_kg: 0.0, brace_kg_m2: 0.0, roller_kg: 0.0, roller_kg_m2: 0.0, springs: SpringMass::Bar };
+    let bodies = Bodies { slider_kg: 0.0, brace_kg: 0.0, brace_kg_m2: 0.0, roller_kg: 0.0, roller_kg_m2: 0.0, springs: SpringMass::Bar };
     let mechanism = Mechanism {
         paths: [0, 1].map(|side| SidePath::new(Arc::clone(&cut), side, size.roller_m, &Flaws::default())),
         brace_m: [size.brace_m; SIDES],

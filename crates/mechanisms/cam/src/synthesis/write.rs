@@ -55,7 +55,9 @@ pub(super) fn read(state: &[f64]) -> Option<Size> {
 
 /// The room as limits that an analysis tests.
 pub(super) fn room(room_m: [f64; 2]) -> Vec<String> {
-    let side = |(name, side): (&str, f64)| side.is_finite().then(|| format!("requirements.limits.{name}.max=\"{} mm\"", format_number(1e3 * side, 7)));
+    let side = |(name, side): (&str, f64)| {
+        side.is_finite().then(|| format!("requirements.limits.{name}.max=\"{} mm\"", format_number(1e3 * side, 7)))
+    };
     ["width", "height"].into_iter().zip(room_m).filter_map(side).collect()
 }
 
@@ -78,7 +80,8 @@ fn sections(asked: &Asked, size: &Size) -> String {
     if asked.law.is_constant() {
         line("for_force", newton(asked.law.force_n(0.0)[0]));
     } else {
-        let points: Vec<String> = asked.law.kinks_m().zip(asked.law.levels_n()).map(|(s, f)| format!("[{}, {}]", mm(s), newton(f))).collect();
+        let points: Vec<String> =
+            asked.law.kinks_m().zip(asked.law.levels_n()).map(|(s, f)| format!("[{}, {}]", mm(s), newton(f))).collect();
         line("for_profile", format!("[{}]", points.join(", ")));
     }
     let rate = |n_per_m: f64| format!("\"{} N/mm\"", format_number(1e-3 * n_per_m, 9));
