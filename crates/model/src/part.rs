@@ -54,6 +54,13 @@ pub struct Grip {
     pub displacement_m: [f64; 2],
 }
 
+impl Grip {
+    /// Whether it stays where it is.
+    pub fn is_held(&self) -> bool {
+        self.displacement_m.iter().all(|x| x.abs() <= 0.0)
+    }
+}
+
 impl Part {
     /// Area of the plate in its plane, m².
     pub fn area_m2(&self) -> f64 {

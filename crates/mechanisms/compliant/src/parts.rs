@@ -449,7 +449,7 @@ impl<'a> Drawing<'a> {
             let copy = if solid.copies.first() == Some(&0) { "" } else { "_mirrored" };
             grips.push(Grip { name: format!("{}{copy}", solid.name), corners_m: hull(solid.corners_m.clone()), displacement_m });
         }
-        if grips.iter().all(|g| g.displacement_m == [0.0; 2]) {
+        if grips.iter().all(Grip::is_held) {
             return Err("nothing that moves is part of it".to_owned());
         }
         Ok(Trial { young_pa: section.young_pa, poisson, grips })

@@ -16,7 +16,7 @@ pub enum Format {
     Stl,
     /// Triangles with their unit, for printing.
     ThreeMf,
-    /// Input of CalculiX and Abaqus, for finite elements.
+    /// Input of `CalculiX` and Abaqus, for finite elements.
     Inp,
 }
 

@@ -1,7 +1,7 @@
-//! Input of CalculiX and Abaqus: the plane of the part in quadratic triangles under plane stress, held and moved by its grips.
+//! Input of `CalculiX` and Abaqus: the plane of the part in quadratic triangles under plane stress, held and moved by its grips.
 //!
 //! Elements are those of plane strain with the constants that make their stresses those of plane stress, E(1 + 2ν)/(1 + ν)² and ν/(1 + ν):
-//! CalculiX makes solids of plane elements, and its own plane stress is exact only for plates that are thin against the elements; at ten
+//! `CalculiX` makes solids of plane elements, and its own plane stress is exact only for plates that are thin against the elements; at ten
 //! times their size it is nearly plane strain.
 
 use std::fmt::Write as _;
@@ -24,7 +24,7 @@ const PER_LINE: usize = 12;
 /// Longest remark: lines of the format end there.
 const LONGEST: usize = 120;
 
-/// The file. All in mm, N and MPa.
+/// The file. All in mm, N and megapascal.
 pub(crate) fn write(part: &Part, shape: &Shape, element_m: Option<f64>) -> Result<String, Error> {
     let grips: &[forcewright_model::Grip] = part.trial.as_ref().map_or(&[], |trial| &trial.grips);
     let regions: Vec<Region> =
@@ -94,7 +94,7 @@ fn add_trial(trial: &Trial, depth: f64, elements: &Elements, out: &mut String) {
             let _ = writeln!(out, "{},", line.iter().map(|node| (node + 1).to_string()).collect::<Vec<_>>().join(", "));
         }
         let [x, y] = grip.displacement_m.map(|m| length(MM_PER_M * m));
-        if grip.displacement_m == [0.0; 2] {
+        if grip.is_held() {
             let _ = writeln!(held, "{set}, 1, 2");
         } else {
             let _ = writeln!(moved, "{set}, 1, 1, {x}\n{set}, 2, 2, {y}");

@@ -136,7 +136,13 @@ fn boundaries_that_meet_or_lie_elsewhere_are_refused() {
 #[test]
 fn options_out_of_range_are_refused() {
     for value in [0.0, -1e-6, 1.0, f64::NAN, f64::INFINITY, 1e-12] {
-        for options in [Options { arc_error_m: value, ..Options::default() }, Options { facet_error_m: value, ..Options::default() }] {
+        // Elements may be as long as a metre.
+        let element_m = if value.total_cmp(&1.0).is_eq() { 1.1 } else { value };
+        for options in [
+            Options { arc_error_m: value, ..Options::default() },
+            Options { facet_error_m: value, ..Options::default() },
+            Options { element_m: Some(element_m), ..Options::default() },
+        ] {
             let error = write(&sound(), Format::Dxf, &options).unwrap_err();
             assert!(error.place == Place::Options && matches!(error.problem, Problem::Option { .. }), "{error}");
         }

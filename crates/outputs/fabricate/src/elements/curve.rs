@@ -36,7 +36,9 @@ impl Smooth {
                     sum += legs(&piece).map(norm).iter().sum::<f64>();
                     pieces.push((piece, sum));
                 }
-                pieces.iter_mut().for_each(|piece| piece.1 /= sum);
+                for piece in &mut pieces {
+                    piece.1 /= sum;
+                }
                 Self::Cubics(pieces)
             }
         }

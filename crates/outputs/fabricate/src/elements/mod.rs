@@ -19,7 +19,7 @@ use crate::shape::Shape;
 /// Least angle asked for, degrees: what refinement reaches with certainty is about 20, in practice 30.
 const LEAST_ANGLE_DEG: f64 = 30.0;
 /// More triangles than anybody waits for; wide places are meshed coarser than asked for below that.
-const MOST_TRIANGLES: f64 = 2e5;
+const MOST_TRIANGLES: u32 = 200_000;
 /// Rounds of smoothing.
 const ROUNDS: usize = 8;
 
@@ -55,7 +55,7 @@ pub(crate) fn mesh(shape: &Shape, grips: &[Region], size: f64) -> Result<Element
         nodes[side.ends[0]] = elastic.curves[side.curve].at(side.range[0]);
     }
     smooth(&mut nodes, &triangles, &fixed);
-    let mut elements = quadratic(nodes, &triangles, &sides, &elastic, grips.len());
+    let mut elements = quadratic(&nodes, &triangles, &sides, &elastic, grips.len());
     straighten(&mut elements);
     if elements.triangles.iter().any(|triangle| is_folded(&elements.nodes, triangle)) {
         return Err(Problem::Mesh { what: "an element is folded over; smaller ones would not be" });
@@ -86,7 +86,7 @@ fn refined(elastic: &Elastic, size: f64) -> Result<(Cdt, Point), Problem> {
         }
         twice_area += cross(elastic.corners[side.ends[0]], elastic.corners[side.ends[1]]);
     }
-    let largest = (0.5 * size * size).max(0.5 * twice_area / MOST_TRIANGLES);
+    let largest = (0.5 * size * size).max(0.5 * twice_area / f64::from(MOST_TRIANGLES));
     let parameters = RefinementParameters::new()
         .exclude_outer_faces(true)
         .with_angle_limit(AngleLimit::from_deg(LEAST_ANGLE_DEG))
@@ -127,7 +127,9 @@ fn split(cdt: &Cdt, side: &Side) -> Option<Vec<Side>> {
 fn smooth(nodes: &mut [Point], triangles: &[[usize; 3]], fixed: &[bool]) {
     let mut around: Vec<Vec<usize>> = vec![Vec::new(); nodes.len()];
     for (index, triangle) in triangles.iter().enumerate() {
-        triangle.iter().for_each(|corner| around[*corner].push(index));
+        for corner in triangle {
+            around[*corner].push(index);
+        }
     }
     for _ in 0..ROUNDS {
         for corner in (0..nodes.len()).filter(|corner| !fixed[*corner] && !around[*corner].is_empty()) {
@@ -153,7 +155,7 @@ fn shape_of(nodes: &[Point], triangle: &[usize; 3]) -> f64 {
 }
 
 /// Nodes amid the sides, on the curves where there are any; only nodes that triangles have.
-fn quadratic(corners: Vec<Point>, triangles: &[[usize; 3]], sides: &[Side], elastic: &Elastic, grips: usize) -> Elements {
+fn quadratic(corners: &[Point], triangles: &[[usize; 3]], sides: &[Side], elastic: &Elastic, grips: usize) -> Elements {
     let key = |a: usize, b: usize| (a.min(b), a.max(b));
     let curved: BTreeMap<(usize, usize), &Side> = sides.iter().map(|side| (key(side.ends[0], side.ends[1]), side)).collect();
     let mut number = vec![usize::MAX; corners.len()];
