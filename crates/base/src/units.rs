@@ -53,6 +53,8 @@ pub enum Dimension {
     AngularSpeed,
     /// Acceleration, m/s².
     Acceleration,
+    /// Viscous damping: force per speed, N·s/m.
+    Damping,
 }
 
 struct DimensionRow {
@@ -88,6 +90,7 @@ const DIMENSIONS: &[DimensionRow] = &[
     row(Dimension::Speed, "a speed", exponents(0, 1, -1, 0, 0, 0, 0), "m/s", "20 mm/s", "mm/s, m/s"),
     row(Dimension::AngularSpeed, "an angular speed", exponents(0, 0, -1, 0, 0, 1, 0), "rad/s", "3000 rpm", "rad/s, deg/s, rpm"),
     row(Dimension::Acceleration, "an acceleration", exponents(0, 1, -2, 0, 0, 0, 0), "m/s^2", "9.81 m/s^2", "m/s^2, mm/s^2"),
+    row(Dimension::Damping, "a damping", exponents(1, 0, -1, 0, 0, 0, 0), "N*s/m", "20 N*s/m", "N*s/m, N*s/mm"),
 ];
 
 const fn row(

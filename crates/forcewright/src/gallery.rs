@@ -45,6 +45,8 @@ pub const EXAMPLES: &[Example] = examples![
     "cam/compensated",
     "cam/push-springs",
     "cam/measured-profile",
+    "cam/bench-press",
+    "cam/weight-release",
 ];
 
 macro_rules! data {

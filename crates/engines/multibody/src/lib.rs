@@ -40,6 +40,7 @@ mod kkt;
 mod law;
 mod model;
 mod motion;
+mod ode;
 mod path;
 mod rows;
 
@@ -55,4 +56,5 @@ pub use inverse::{Grid, Inverse, Kinematics};
 pub use law::{Law, Table, TableError};
 pub use model::{Contact, JointId, Model, System};
 pub use motion::Motion;
+pub use ode::{Ended, Ode, OdeSettings, Trajectory, integrate};
 pub use path::{Curve, Follows, Path, PathPoint, Side};

@@ -9,13 +9,16 @@ use crate::cut::{Cut, CutError, SIDES};
 use crate::design::Design;
 use crate::mechanism::{Drive, Instant, Mechanism, NotAssembled, Pose, Sense};
 use crate::metrics::METRICS;
-use crate::motion::{self, Moment};
+use crate::motion::{self, Moment, integral};
 use crate::path::{Corner, corner, curvature_per_m, frame};
+use crate::release::{End, Release, Released, release};
 
 /// Stations over the stroke, for curves and pictures.
 pub(crate) const STATIONS: usize = 480;
 /// Panels of the window, for means; extremes are taken at their ends and middles.
 const PANELS: usize = 400;
+/// How far above the start of the travel a released slider is stopped, relative to the stroke.
+const START_STOP: f64 = 1e-6;
 
 /// Forces at a travel.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +58,8 @@ pub struct Behaviour {
     pub motion: Option<Vec<Moment>>,
     /// The slower motion that it is compared with.
     pub reference: Option<Vec<Moment>>,
+    /// How a release ended; its moments are those of the motion.
+    pub release: Option<Released>,
     /// Times a path was evaluated.
     pub evaluations: u64,
 }
@@ -81,10 +86,17 @@ impl Behaviour {
         let free = design.free_guide;
         let (stations, stopped) = scan(&mechanism, [0.0, stroke_m], over_stroke, free, &mut evaluations);
         let (window, cut_short) = scan(&mechanism, window_m, over_window, free, &mut evaluations);
-        let run = |m: &motion::Motion| motion::run(&mechanism, m);
-        let motion = design.motion.as_ref().and_then(|m| run(m).ok());
-        let reference = design.motion.as_ref().and_then(|m| run(&m.lasting(m.reference_s?)).ok());
-        Self { cut, corners, stations, window_m, window, stopped: stopped.or(cut_short), motion, reference, evaluations, mechanism }
+        let run = |m: &motion::Motion| {
+            // A free slider begins where it rests.
+            let start = if free { free_station(&mechanism, m.start_m, None).ok()?.sideways_m[0] } else { 0.0 };
+            motion::prescribed(&mechanism, m, free.then_some(start)).ok()
+        };
+        let motion = design.motion.as_ref().and_then(run);
+        let reference = design.motion.as_ref().and_then(|m| run(&m.lasting(m.reference_s?)));
+        let released = design.release.as_ref().map(|r| let_go(&mechanism, r, &stations, stroke_m));
+        let motion = motion.or_else(|| released.as_ref().map(|r| r.moments.clone()).filter(|moments| !moments.is_empty()));
+        let stopped = stopped.or(cut_short);
+        Self { cut, corners, stations, window_m, window, stopped, motion, reference, release: released, evaluations, mechanism }
     }
 
     /// Mean and standard deviation over the window, by Simpson's rule.
@@ -109,6 +121,13 @@ impl Behaviour {
     pub fn extent(stations: &[Station], value: impl Fn(&Station) -> f64) -> [f64; 2] {
         stations.iter().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
     }
+}
+
+/// Lets the slider go. Its stops are the ends of the stroke; the one at the start lies where the rollers come to it, and a little above: on
+/// a cam without undercut the mass seen by the slider grows without limit towards s = 0.
+fn let_go(mechanism: &Mechanism, asked: &Release, stations: &[Station], stroke_m: f64) -> Released {
+    let near = stations.first().map_or(0.0, |s| s.travel_m).max(START_STOP * stroke_m);
+    release(mechanism, &Release { start_m: asked.start_m.max(near), stops_m: [near, stroke_m], ..*asked })
 }
 
 /// Forces at even travels; stops where a brace no longer reaches its path. A scan from the very start begins where the slider comes to rest.
@@ -218,6 +237,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     pressure(design, behaviour, &mut m);
     profile(behaviour, &mut m);
     moving(behaviour, &mut m);
+    work(behaviour, &mut m);
     m
 }
 
@@ -430,4 +450,21 @@ fn moving(behaviour: &Behaviour, m: &mut Measured) {
     m.set("force_min_motion", -most(&mut motion.iter().map(|i| -i.moving.force_n)));
     let least = |i: &Moment| i.moving.sides[0].normal_n.min(i.moving.sides[1].normal_n);
     m.set("contact_force_min_motion", -most(&mut motion.iter().map(|i| -least(i))));
+}
+
+/// Speed, time, work and loss of a motion.
+fn work(behaviour: &Behaviour, m: &mut Measured) {
+    let Some(motion) = &behaviour.motion else { return };
+    m.set("speed_max", motion.iter().map(|i| i.speed_m_per_s.abs()).fold(0.0, f64::max));
+    m.set("work_in", integral(motion, |i| (i.moving.force_n * i.speed_m_per_s).max(0.0)));
+    let Some(release) = &behaviour.release else {
+        m.set("energy_lost", integral(motion, |i| i.lost_w));
+        return;
+    };
+    m.set("energy_lost", release.friction_j + release.damping_j + release.catches_j);
+    if matches!(release.end, End::Stop { .. }) {
+        m.set("time_to_end", release.time_s);
+        m.set("speed_end", motion.last().map(|i| i.speed_m_per_s.abs()));
+    }
+    m.set("slack_time", motion.iter().any(|i| i.cable_n.is_some()).then_some(release.slack_s));
 }

@@ -53,6 +53,7 @@ pub(crate) fn display_unit(design: &Design, index: usize) -> Unit {
         D::Energy => named("J"),
         D::Mass => named("kg"),
         D::Ratio => named("%"),
+        D::Time => units.time.clone(),
         other => Unit::si(other),
     })
 }
@@ -172,6 +173,8 @@ impl Context<'_> {
                     "profile_error_rms" | "profile_error_max" => "the profile has no errors; give `errors.measured_profile`".to_owned(),
                     "hertz_pressure_max" => "give `material.cam`, `material.roller` and `design.cam_thickness`".to_owned(),
                     "force_deviation" => "no force is required; give `requirements.force`".to_owned(),
+                    "time_to_end" | "speed_end" => "the slider is not let go, or does not come to a stop in time".to_owned(),
+                    "slack_time" => "no mass hangs on the slider; give `motion.hanging_mass`".to_owned(),
                     name if name.contains("motion") || name.starts_with("peak") => "there is no motion; give `[motion]`".to_owned(),
                     _ => self.unreached(),
                 };
@@ -285,6 +288,9 @@ impl Context<'_> {
     /// CAM008: a cable that pulls the slider stays taut.
     fn slack(&self) -> Option<Check> {
         self.behaviour.motion.as_ref()?;
+        if self.behaviour.release.is_some() {
+            return self.hangs();
+        }
         let base = self.base("CAM008", "slack", "A pulling cable stays taut in the motion", "force_min_motion");
         let scale = self.measured.get("force_mean").filter(|f| *f > 0.0);
         let fix = format!(
@@ -317,6 +323,16 @@ impl Context<'_> {
         let missing = "give `material.cam` and `material.roller` with their yield stress and Poisson's ratio, and `design.cam_thickness`; on a corner of the cam there is no such pressure".to_owned();
         let basis = "largest Hertzian pressure over the window against that of first yield below the surface, 1.79 σ_y for ν = 0.3 (Johnson 1985, 6.1)";
         Some(Comparison { required: false, limit, missing, fix, basis: basis.to_owned(), ..base }.judge())
+    }
+
+    /// CAM013: after a release slack is computed, not excluded.
+    fn hangs(&self) -> Option<Check> {
+        self.design.release.filter(|r| r.weight_kg > 0.0)?;
+        let base = self.base("CAM013", "hanging", "The cable of the hanging mass stays taut", "slack_time");
+        let scale = self.design.release.map(|r| r.duration_s);
+        let fix = "the slider runs ahead of the falling mass: pull less by other means, or damp it".to_owned();
+        let basis = "time over which the mass falls freely; it ends with a jerk in which energy is lost; the margin is relative to the time watched";
+        Some(Comparison { required: false, limit: Some(0.0), scale, fix, basis: basis.to_owned(), ..base }.judge())
     }
 
     /// CAM009: friction needed for rolling against what is there.

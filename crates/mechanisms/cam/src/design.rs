@@ -1,5 +1,6 @@
 //! From what was typed to a design: references checked, catalogue values in place, SI numbers.
 
+mod motion;
 mod profile;
 mod springs;
 
@@ -15,9 +16,10 @@ use crate::cut::{Cut, CutError, CutSide, Purpose, SIDES};
 use crate::law::ForceLaw;
 use crate::measured::{Measured as MeasuredProfile, RandomProfile, together};
 use crate::mechanism::{Bodies, Mechanism, SpringMass};
-use crate::motion::{Law, Motion};
+use crate::motion::Motion;
 use crate::parts::Making;
 use crate::path::{Flaws, NormalError, SidePath};
+use crate::release::Release;
 use crate::spec::{self, Spec};
 use crate::springs::{Bank, Spring};
 
@@ -34,6 +36,8 @@ pub struct Design {
     pub built: Built,
     /// How the slider moves, where that is asked for.
     pub motion: Option<Motion>,
+    /// What lets the slider go, where that is asked for.
+    pub release: Option<Release>,
     /// How the parts are made.
     pub making: Making,
     /// Whether the slider is free to move sideways.
@@ -147,6 +151,11 @@ impl Design {
         Cut::new(self.purpose.clone()).map(Arc::new)
     }
 
+    /// Whether a motion is asked for.
+    pub fn moves(&self) -> bool {
+        self.motion.is_some() || self.release.is_some()
+    }
+
     /// The mechanism on a cam that was cut.
     pub fn mechanism(&self, cut: &Arc<Cut>) -> Mechanism {
         let built = &self.built;
@@ -196,7 +205,8 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     let springs = springs::mounted(spec, diagnostics);
     let arm = rolling_arm(spec, diagnostics);
     let requirements = requirements_of(spec, diagnostics);
-    let motion = motion_of(spec, diagnostics);
+    let motion = motion::prescribed(spec, diagnostics);
+    let release = motion::released(spec, diagnostics);
     if diagnostics.has_errors() {
         return None;
     }
@@ -209,7 +219,8 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         }
     };
     let window_m = window_of(spec, &purpose, diagnostics);
-    check_motion(spec, &purpose, motion.as_ref(), diagnostics);
+    let ends = motion.map(|m| [m.start_m, m.start_m + m.rise_m]).or(release.map(|r| [r.start_m; 2]));
+    motion::check_ends(spec, &purpose, ends, diagnostics);
     let roller_m = 0.5 * si(&spec.design.roller_diameter)?;
     check_rollers(spec, &cut, roller_m, diagnostics);
     if diagnostics.has_errors() {
@@ -217,6 +228,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     }
     let mut built = built_of(spec, springs, extension, (roller_m, arm?))?;
     built.measured = profile::measured_of(spec, &cut, roller_m, diagnostics);
+    motion::check_mass(spec, &built, release.as_ref(), diagnostics);
     if diagnostics.has_errors() {
         return None;
     }
@@ -226,6 +238,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         cut_roller_m: roller_m,
         built,
         motion,
+        release,
         making: making_of(spec, roller_m)?,
         free_guide: spec.motion.guide.as_ref().is_some_and(|g| g.value == "free"),
         adjust_pitch_m: si(&spec.design.springs.adjust.pitch),
@@ -373,45 +386,6 @@ fn window_of(spec: &Spec, purpose: &Purpose, diagnostics: &mut Diagnostics) -> O
             )),
     );
     None
-}
-
-fn motion_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Motion> {
-    let motion = &spec.motion;
-    let law = match motion.law.as_ref()?.value {
-        "polynomial" => Law::Polynomial,
-        "uniform" => Law::Uniform,
-        _ => Law::Cycloidal,
-    };
-    let place = place_of(motion);
-    let mut need = |slot: &Slot<Quantity>, name: &str, example: &str| {
-        if slot.is_none() {
-            diagnostics.push(missing(
-                place,
-                &format!("`{name}`"),
-                &format!("a motion has `start`, `rise` and `duration`; add `{name} = \"{example}\"`"),
-            ));
-        }
-        si(slot)
-    };
-    let (start, rise, duration) =
-        (need(&motion.start, "start", "30 mm"), need(&motion.rise, "rise", "100 mm"), need(&motion.duration, "duration", "0.5 s"));
-    Some(Motion { law, start_m: start?, rise_m: rise?, duration_s: duration?, reference_s: si(&motion.reference_duration) })
-}
-
-fn check_motion(spec: &Spec, purpose: &Purpose, motion: Option<&Motion>, diagnostics: &mut Diagnostics) {
-    let Some(motion) = motion else { return };
-    let end = motion.start_m + motion.rise_m;
-    let inside = |s: f64| s >= -1e-9 && s <= purpose.stroke_m * (1.0 + 1e-9);
-    if inside(motion.start_m) && inside(end) {
-        return;
-    }
-    let place = spec.motion.rise.as_ref().map_or_else(Span::default, |r| r.span);
-    diagnostics.push(
-        Diagnostic::error("E0605", place, "the motion leaves the stroke for which the cam is cut")
-            .label("from `start`, by so much")
-            .related(spec.design.stroke.as_ref().map_or_else(Span::default, |s| s.span), "the stroke")
-            .help("shorten `rise`, or move `start`"),
-    );
 }
 
 /// Rollers must find room beside the axis and beside each other.

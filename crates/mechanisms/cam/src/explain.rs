@@ -69,6 +69,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "`[requirements.limits]` bounds any metric by its name. A metric that the design does not have is *not assessed*, which does not count as met.",
     ),
     code(
+        "CAM013",
+        "the cable of the hanging mass stays taut",
+        "After a release the hanging mass pulls the slider by a cable. Where the slider would accelerate faster than the mass falls, the cable is slack and the mass falls freely; where it becomes taut again both go on with one speed, the momentum is kept and energy is lost (`docs/theory/cam.md`, eq. 12). The motion is computed through all of it; the jerks are hard on a cable.",
+    ),
+    code(
         "E0601",
         "the path leaves the reach of a brace",
         "A roller is never further from the axis than its brace is long. With soft springs, or much force over a long stroke, it would have to be. The message names the stroke up to which there is a path.",
@@ -108,6 +113,21 @@ pub(crate) const CODES: &[Explanation] = &[
         "E0609",
         "the cam cannot be drawn",
         "The profile could not be fitted with arcs within `parts.chord_error`, or the cam cannot be cut at all.",
+    ),
+    code(
+        "E0610",
+        "a key that the law of the motion does not use",
+        "A motion by a law of time has `start`, `rise`, `duration`, and for a repetition `pause` and `return`. After a release the motion follows from `pull`, `hanging_mass` and `damping`; it has `start` and `duration`.",
+    ),
+    code(
+        "E0611",
+        "what is let go has no mass",
+        "The acceleration of a released slider is force over mass. Give masses in `[design.bodies]`, or hang a mass on it.",
+    ),
+    code(
+        "E0612",
+        "a free slider is not let go",
+        "The motion after a release is computed with one freedom, along the guide. A slider without a guide can be moved along its travel by a law of time; then its way sideways is computed.",
     ),
     code(
         "E0630",

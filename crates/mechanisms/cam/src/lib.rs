@@ -19,6 +19,7 @@ mod motion;
 mod parts;
 mod path;
 mod profile_figures;
+mod release;
 mod reproduce;
 mod scene;
 mod spec;
@@ -31,7 +32,7 @@ use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism as Family, Progress, Reproduction};
 use forcewright_contract::studies::{Free, Purpose as StudyPurpose, Studies};
 use forcewright_contract::synthesis::{Skeleton, Synthesiser};
-use forcewright_model::{Counter, Metric, NoPart, Outcome, PartSet, Status, StatusKind};
+use forcewright_model::{Counter, Curve, Metric, NoPart, Outcome, PartSet, Status, StatusKind};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
 
@@ -43,9 +44,10 @@ pub use law::{ForceLaw, LawError};
 pub use measured::{Measured as MeasuredProfile, MeasuredError, Points, RandomProfile, Smoothed, measured as measure_profile};
 pub use mechanism::{Bodies, Drive, Instant, Mechanism, NotAssembled, Pose, Sense, SideForces, SpringMass};
 pub use metrics::METRICS;
-pub use motion::{Law, Moment, Motion};
+pub use motion::{Law, Moment, Motion, prescribed};
 pub use parts::Making;
 pub use path::{Corner, Flaws, NormalError, Place, SidePath, Vector, curvature_per_m, frame};
+pub use release::{End, Release, Released, release};
 pub use spec::Spec;
 pub use springs::{Bank, Spring, SpringLaw};
 
@@ -79,7 +81,7 @@ impl Family for Cam {
             error_estimate: None,
             metrics: metrics_of(design, &measured),
             checks: checks::checks(design, &behaviour, &measured),
-            curves: figures::curves(design, &behaviour),
+            curves: curves_of(design, &behaviour),
             counters: vec![
                 Counter { name: "stations", count: (behaviour.stations.len() + behaviour.window.len()) as u64 },
                 Counter { name: "path_evaluations", count: behaviour.evaluations },
@@ -87,7 +89,9 @@ impl Family for Cam {
             sources: statements::sources(design),
             warnings: statements::warnings(design, &behaviour, &measured),
         };
-        Analysis { outcome, figures: figures::figures(design, &behaviour, &measured), model, limits }
+        let mut figures = figures::figures(design, &behaviour, &measured);
+        figures.extend(motion::curves::figure(design, &behaviour));
+        Analysis { outcome, figures, model, limits }
     }
 
     fn parts(design: &Design) -> Result<PartSet, NoPart> {
@@ -121,6 +125,13 @@ impl Family for Cam {
     fn reproductions() -> &'static [Reproduction] {
         reproduce::ALL
     }
+}
+
+/// Curves over the travel and over time.
+fn curves_of(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
+    let mut all = figures::curves(design, behaviour);
+    all.extend(motion::curves::curves(design, behaviour));
+    all
 }
 
 /// The metrics as outputs see them.

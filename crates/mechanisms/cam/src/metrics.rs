@@ -119,4 +119,10 @@ pub const METRICS: &[MetricInfo] = &[
         true,
         "Smallest force between a roller and the cam in the motion; below zero it lifts off.",
     ),
+    metric("speed_max", Dimension::Speed, true, "Largest speed of the slider in the motion."),
+    metric("speed_end", Dimension::Speed, false, "Speed with which the released slider runs against a stop."),
+    metric("time_to_end", Dimension::Time, true, "Time that the released slider takes to a stop."),
+    metric("slack_time", Dimension::Time, false, "How long the cable of the hanging mass is slack after the release."),
+    metric("work_in", Dimension::Energy, false, "Work of what pulls the slider over the motion, where it moves the way it is pulled."),
+    metric("energy_lost", Dimension::Energy, true, "Work lost over the motion: rolling, damping, and a cable that becomes taut."),
 ];

@@ -194,6 +194,12 @@ pub(crate) struct Motion {
     pub rise: Slot<Quantity>,
     pub duration: Slot<Quantity>,
     pub reference_duration: Slot<Quantity>,
+    pub pause: Slot<Quantity>,
+    pub back: Slot<bool>,
+    pub pull: Slot<Quantity>,
+    pub hanging_mass: Slot<Quantity>,
+    pub hanging_gravity: Slot<Quantity>,
+    pub damping: Slot<Quantity>,
     pub guide: Slot<&'static str>,
 }
 
@@ -216,6 +222,7 @@ pub(crate) const LAWS: &[Word] = &[
     Word { word: "cycloidal", doc: "s = start + rise (t/T − sin(2πt/T)/2π): no acceleration at the ends" },
     Word { word: "polynomial", doc: "s = start + rise (10u³ − 15u⁴ + 6u⁵), u = t/T: no acceleration at the ends" },
     Word { word: "uniform", doc: "at constant speed" },
+    Word { word: "release", doc: "let go at rest at `start`: it moves as `pull`, `hanging_mass`, springs and masses make it move" },
 ];
 /// How the slider is guided.
 pub(crate) const GUIDES: &[Word] =
@@ -506,10 +513,23 @@ impl Describe for Motion {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.choice(&Param::new("law", "How the slider moves over time."), LAWS, &mut self.law);
         v.quantity(&length("start", "Its travel s at the beginning.").within(0.0, LARGEST_M), &mut self.start);
-        v.quantity(&length("rise", "How far it moves; below zero it moves back.").within(-LARGEST_M, LARGEST_M), &mut self.rise);
+        v.quantity(
+            &length("rise", "How far it moves, but for `release`; below zero it moves back.").within(-LARGEST_M, LARGEST_M),
+            &mut self.rise,
+        );
         let time = |key, doc| Param::new(key, doc).of(Dimension::Time).within(1e-4, 1e5);
-        v.quantity(&time("duration", "How long that takes, T."), &mut self.duration);
+        v.quantity(&time("duration", "How long that takes, T; after a release, how long it is watched."), &mut self.duration);
         v.quantity(&time("reference_duration", "A slower motion to compare with."), &mut self.reference_duration);
+        v.quantity(&time("pause", "How long the slider rests after the stroke.").within(0.0, 1e5), &mut self.pause);
+        v.flag(&Param::new("return", "Whether it then moves back to `start` in the same time: a repetition."), &mut self.back);
+        let pull = Param::new("pull", "Released: constant pull along the travel.").of(Dimension::Force).within(-1e6, 1e6);
+        v.quantity(&pull, &mut self.pull);
+        let mass = "Released: mass on a cable that pulls along the travel; the cable goes slack where it would have to push.";
+        v.quantity(&Param::new("hanging_mass", mass).of(Dimension::Mass).above(0.0, 1e4), &mut self.hanging_mass);
+        let gravity = Param::new("hanging_gravity", "Gravity of the hanging mass, whichever way the mechanism lies.");
+        v.quantity(&gravity.of(Dimension::Acceleration).above(0.0, 100.0).default("9.81 m/s^2"), &mut self.hanging_gravity);
+        let damping = Param::new("damping", "Released: viscous damping of the slider, force over speed.");
+        v.quantity(&damping.of(Dimension::Damping).within(0.0, 1e6), &mut self.damping);
         v.choice(&Param::new("guide", "How the slider is guided, also at rest.").default("rigid"), GUIDES, &mut self.guide);
     }
 }

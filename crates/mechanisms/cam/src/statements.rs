@@ -6,6 +6,7 @@ use forcewright_model::{Citation, Statement, Status, StatusKind, Warning};
 use crate::analysis::{Behaviour, Measured};
 use crate::design::Design;
 use crate::mechanism::SpringMass;
+use crate::release::End;
 
 fn statement(title: &str, text: impl Into<String>) -> Statement {
     Statement { title: title.to_owned(), text: text.into() }
@@ -26,15 +27,37 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Status {
             advice: Some("make the errors smaller, or the brace longer".to_owned()),
         };
     }
-    if design.motion.is_some() && behaviour.motion.is_none() {
+    if design.moves() && behaviour.motion.is_none() {
+        let (message, advice) = if design.free_guide {
+            ("in the motion the free slider runs away from its axis", "guide it, or move it more slowly")
+        } else {
+            ("the motion passes places where the mechanism cannot be assembled", "shorten `motion.rise`")
+        };
+        return Status { kind: StatusKind::NotConverged, message: message.to_owned(), advice: Some(advice.to_owned()) };
+    }
+    if let Some(release) = &behaviour.release
+        && let End::NotAssembled(_) | End::Unsettled = release.end
+    {
+        let what = if release.end == End::Unsettled { "cannot be integrated further" } else { "leaves the cam" };
+        let time = format_si(release.time_s, &design.units.time, 3);
         return Status {
             kind: StatusKind::NotConverged,
-            message: "the motion passes places where the mechanism cannot be assembled".to_owned(),
-            advice: Some("shorten `motion.rise`".to_owned()),
+            message: format!("after {time} the motion of the released slider {what}"),
+            advice: Some("watch it for a shorter `motion.duration`".to_owned()),
         };
     }
     let end = travel(design.purpose.stroke_m);
-    Status { kind: StatusKind::Complete, message: format!("computed over the whole stroke of {end}, up and down"), advice: None }
+    let mut message = format!("computed over the whole stroke of {end}, up and down");
+    if let Some(release) = &behaviour.release {
+        let what = match release.end {
+            End::Stop { far: true } => "is at the end of its travel",
+            End::Stop { far: false } => "is at the start of its travel",
+            End::Rest => "is at rest, held by friction,",
+            _ => "still moves",
+        };
+        message = format!("{message}; let go, the slider {what} after {}", format_si(release.time_s, &design.units.time, 3));
+    }
+    Status { kind: StatusKind::Complete, message, advice: None }
 }
 
 /// Which equations were solved and how.
@@ -75,7 +98,19 @@ pub(crate) fn limits(design: &Design) -> Vec<Statement> {
             "Only rolling resistance, in proportion to the normal force. Friction in joints, in the guide of the slider and between the coils of springs is not in the numbers.",
         ),
     ];
-    if design.motion.is_some() {
+    if design.free_guide && design.motion.is_some() {
+        all.push(statement(
+            "Free slider in the motion",
+            "It begins at rest where nothing pushes it sideways and swings undamped; rolling resistance is taken against the way along the travel.",
+        ));
+    }
+    if design.release.is_some() {
+        all.push(statement(
+            "Release",
+            "One freedom, on the guide. Stops are rigid and end the motion; the cable has no mass and does not stretch, the pulley no inertia; where the cable becomes taut, slider and mass take one speed at once.",
+        ));
+    }
+    if design.moves() {
         all.push(statement(
             "Contact in the motion",
             "The rollers are kept on the cam also where they would lift off; the check of the contact says where that is.",

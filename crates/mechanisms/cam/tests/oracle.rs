@@ -177,7 +177,15 @@ fn forces_in_a_motion() {
     let series = &reference()["multibody"]["force_series_T0.125_2springs_gravity"];
     let cut = paper_cut(0.0);
     let m = Mechanism { gravity_m_per_s2: 9.81, ..plain(&cut, 1380.0, 0.0) };
-    let motion = Motion { law: Law::Cycloidal, start_m: 0.22 - cut.rise_m(0), rise_m: 0.1, duration_s: 0.125, reference_s: None };
+    let motion = Motion {
+        law: Law::Cycloidal,
+        start_m: 0.22 - cut.rise_m(0),
+        rise_m: 0.1,
+        duration_s: 0.125,
+        pause_s: 0.0,
+        returns: false,
+        reference_s: None,
+    };
     let (force, normal, tangential) = (numbers(&series["F"]), numbers(&series["N"]), numbers(&series["Tt"]));
     for (i, t) in numbers(&series["t"]).into_iter().enumerate() {
         let [s, v, a] = motion.at(t / 0.125);

@@ -167,7 +167,7 @@ fn measures(design: &Design) -> Vec<Measure> {
                 }
             }
             "contact_force_min" => (lower, requirement) = (0.0, "contact"),
-            "contact_force_min_motion" if design.motion.is_some() => (lower, requirement) = (0.0, "contact_motion"),
+            "contact_force_min_motion" if design.moves() => (lower, requirement) = (0.0, "contact_motion"),
             _ => {}
         }
         for limit in requirements.iter().flat_map(|r| &r.limits).filter(|l| METRICS[l.metric].name == name) {
@@ -212,7 +212,7 @@ impl Evaluator for Many {
             None => room.design.cut().map_err(|e| failure(format!("the cam cannot be cut: {e:?}")))?,
         };
         let behaviour = Behaviour::sampled(&room.design, cut, self.window_m, 2 * PANELS, 2 * PANELS);
-        if behaviour.stopped.is_some() || room.design.motion.is_some() != behaviour.motion.is_some() {
+        if behaviour.stopped.is_some() || room.design.moves() != behaviour.motion.is_some() {
             return Err(failure("a brace misses the path of its roller".to_owned()));
         }
         out.values.clear();
