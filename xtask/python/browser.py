@@ -205,9 +205,9 @@ def opened(browser, job):
 
 
 def wanted_figures(job):
-    """The figures that stand beside the report as files; every mechanism has at least its drawing, its force and its stress."""
+    """The figures that stand beside the report as files; every mechanism has at least its drawing and its force."""
     found = {path.stem for path in pathlib.Path(job["file"]).parent.glob("*.svg")}
-    return sorted(found | {"mechanism", "force", "stress"})
+    return sorted(found | {"mechanism", "force"})
 
 
 def look_at(browser, job):
@@ -220,6 +220,7 @@ def look_at(browser, job):
     check(f"{name}: nothing is wider than {WIDTH} px", lambda: fail_on(page.measure("overflow")))
     check(f"{name}: no text outside its drawing", lambda: fail_on(page.measure("textsOutside")))
     check(f"{name}: no texts over each other in a drawing", lambda: fail_on(page.measure("textsOverlapping")))
+    check(f"{name}: every frame of a film can be seen, by itself", lambda: fail_on(page.measure("frames")))
     for scheme in ("light", "dark"):
         check(f"{name}: contrast of text, {scheme}", lambda scheme=scheme: contrast(page, scheme))
         check(f"{name}: picture, {scheme}", lambda scheme=scheme: picture(page, scheme, out))

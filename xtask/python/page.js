@@ -9,7 +9,12 @@ function name(element) {
 }
 
 function shown(element) {
-  return element.checkVisibility({ opacityProperty: true, visibilityProperty: true });
+  if (!element.checkVisibility({ opacityProperty: true, visibilityProperty: true })) return false;
+  // Inside a drawing, browsers count what is not displayed as visible.
+  for (let above = element; above?.ownerSVGElement; above = above.parentElement) {
+    if (getComputedStyle(above).display === "none") return false;
+  }
+  return true;
 }
 
 function figures(wanted) {
@@ -111,6 +116,30 @@ function textsOverlapping() {
     }
   }
   return problems;
+}
+
+// Each button of a film shows its frame and no other, and the texts of that frame keep apart.
+function frames() {
+  const problems = [];
+  for (const film of document.querySelectorAll("fieldset.film")) {
+    const buttons = [...film.querySelectorAll("input")];
+    const all = [...film.querySelectorAll("svg > g.k")];
+    const first = buttons.find((button) => button.checked);
+    if (!first || buttons.length !== all.length) problems.push(`${name(film)} has ${all.length} frames and ${buttons.length} buttons`);
+    if (!film.querySelector("legend")?.textContent.trim()) problems.push(`${name(film)} has no legend`);
+    const { width, height } = film.querySelector("svg").getBoundingClientRect();
+    buttons.forEach((button, i) => {
+      button.click();
+      const seen = all.filter((frame) => shown(frame));
+      if (seen.length !== 1 || seen[0] !== all[i]) problems.push(`button ${i} of ${name(film)} shows ${seen.length} frames`);
+      if (!film.querySelector(`label[for="${button.id}"]`)?.textContent.trim()) problems.push(`button ${i} of ${name(film)} has no label`);
+      const box = film.querySelector("svg").getBoundingClientRect();
+      if (box.width !== width || box.height !== height) problems.push(`frame ${i} of ${name(film)} has another size`);
+      problems.push(...textsOutside(), ...textsOverlapping());
+    });
+    first?.click();
+  }
+  return [...new Set(problems)];
 }
 
 const canvas = Object.assign(document.createElement("canvas"), { width: 1, height: 1 });

@@ -1,6 +1,6 @@
 //! Figures of a report: plots and scenes, as data.
 
-use crate::{Axis, PartSet, Scene};
+use crate::{Axis, Item, PartSet, Scene};
 
 /// How a line is drawn; never colour alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +15,8 @@ pub enum Stroke {
     Reference,
     /// A limit: dashed, warning colour.
     Limit,
+    /// A region whose edge the points go around: tinted, without a line.
+    Area,
 }
 
 /// One line of a plot. Values are SI; the plot's axes say how they are shown.
@@ -99,15 +101,85 @@ pub struct Plot {
     pub from_zero: bool,
 }
 
+/// A picture that moves, one frame at a time, as the reader chooses; all frames share one scale.
+#[derive(Clone, Debug)]
+pub struct Film {
+    /// What passes from frame to frame: the travel.
+    pub axis: Axis,
+    /// What is the same in all frames, behind what moves; words, colours and unit of all of them.
+    pub stage: Scene,
+    /// The frames, in the order of the axis.
+    pub frames: Vec<Frame>,
+    /// Index of the one that is seen at first, and where only one can be.
+    pub chosen: usize,
+}
+
+/// What is seen at one place of a film's axis.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// The place, SI.
+    pub at: f64,
+    /// What else to know of it: `F = 50.2 N`.
+    pub note: String,
+    /// What moves, back to front.
+    pub items: Vec<Item>,
+}
+
+impl Film {
+    /// The chosen frame as a picture of its own.
+    pub fn still(&self) -> Scene {
+        let mut scene = self.stage.clone();
+        if let Some(frame) = self.frames.get(self.chosen) {
+            scene.items.extend(frame.items.iter().cloned());
+        }
+        scene
+    }
+}
+
+/// A bar chart: what each of some causes does, downwards and upwards from zero.
+#[derive(Clone, Debug)]
+pub struct Bars {
+    /// What the bars measure.
+    pub axis: Axis,
+    /// What the bars of a row mean, with their look, top to bottom.
+    pub series: Vec<(String, Stroke)>,
+    /// Rows, top to bottom.
+    pub rows: Vec<BarRow>,
+}
+
+/// One cause.
+#[derive(Clone, Debug)]
+pub struct BarRow {
+    /// Its name.
+    pub label: String,
+    /// Both ends of each bar, SI, in the order of the series; the first belongs to the lower value of the cause.
+    pub ends: Vec<[f64; 2]>,
+}
+
 /// What a figure shows.
 #[derive(Clone, Debug)]
 pub enum FigureContent {
     /// Lines over axes.
     Plot(Plot),
+    /// Bars beside names.
+    Bars(Bars),
     /// A drawing.
     Scene(Scene),
+    /// A drawing that moves.
+    Film(Film),
     /// Plates as they are cut.
     Part(PartSet),
+}
+
+impl FigureContent {
+    /// The picture of a mechanism, if it is one; of a film the chosen frame.
+    pub fn still(&self) -> Option<Scene> {
+        match self {
+            Self::Scene(scene) => Some(scene.clone()),
+            Self::Film(film) => Some(film.still()),
+            Self::Plot(_) | Self::Bars(_) | Self::Part(_) => None,
+        }
+    }
 }
 
 /// A figure with its words.

@@ -12,9 +12,11 @@ mod study;
 
 pub use check::{Check, CheckState, Sense};
 pub use curve::{Axis, Branch, Curve};
-pub use figure::{Figure, FigureContent, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan};
+pub use figure::{
+    BarRow, Bars, Figure, FigureContent, Film, Frame, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan,
+};
 pub use outcome::{Counter, Metric, Outcome, Status, StatusKind, Warning};
 pub use part::{Fillets, Grip, Hole, NoPart, Part, PartMark, PartSet, Sheet, Trial};
 pub use report::{Citation, ParameterRow, Report, Statement};
-pub use scene::{ColourScale, Item, Role, Scene, SupportKind};
+pub use scene::{ColourScale, Item, Look, Role, Scene, SupportKind};
 pub use study::{Study, StudyColumn, StudyTable};

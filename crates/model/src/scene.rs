@@ -25,6 +25,31 @@ pub enum Role {
     Plane,
     /// The same of a copy.
     PlaneCopy,
+    /// A thing with a look and a word of its own, for the legend.
+    Named(Look, &'static str),
+}
+
+/// How a named thing is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// A solid that stays where it is: grey, edged.
+    Plate,
+    /// A solid that moves: paper-coloured, with a thick edge.
+    Moving,
+    /// A bar that moves: grey with edges along it.
+    Bar,
+    /// A guide: a thin solid line.
+    Rail,
+    /// An axis: dash-dotted.
+    Axis,
+    /// The way of a point: dashed.
+    Track,
+    /// A spring or a cable: a solid line.
+    Wire,
+    /// Values drawn as lines across another line.
+    Comb,
+    /// What such a value must not pass: dashed, in the colour of limits.
+    Limit,
 }
 
 /// How a point is held.
@@ -64,6 +89,15 @@ pub enum Item {
         /// Corners, m.
         corners: Vec<[f64; 2]>,
         /// Whether it is drawn as made or under load.
+        role: Role,
+    },
+    /// A round body.
+    Disc {
+        /// Its middle, m.
+        centre: [f64; 2],
+        /// Its radius, m.
+        radius_m: f64,
+        /// What it shows.
         role: Role,
     },
     /// A support symbol.

@@ -274,12 +274,12 @@ impl Front {
     }
 
     fn shapes(&self) -> Vec<Figure> {
-        let scene = |(id, (i, report)): (&'static str, (usize, &Report))| {
-            let own = report.figures.iter().find(|f| matches!(f.content, FigureContent::Scene(_)))?;
+        let shape = |(id, (i, report)): (&'static str, (usize, &Report))| {
+            let (own, scene) = report.figures.iter().find_map(|f| Some((f, f.content.still()?)))?;
             let title = format!("Point {}, {} = {}: {}", i + 1, self.key, self.points[i].value, own.title);
-            Some(Figure { id, title, ..own.clone() })
+            Some(Figure { id, title, content: FigureContent::Scene(scene), ..own.clone() })
         };
-        SHAPES.into_iter().zip(self.shown()).filter_map(scene).collect()
+        SHAPES.into_iter().zip(self.shown()).filter_map(shape).collect()
     }
 
     /// The main curve of the same points.
@@ -288,7 +288,7 @@ impl Front {
         let plot_of = |report: &Report| {
             report.figures.iter().find_map(|f| match &f.content {
                 FigureContent::Plot(plot) => Some((f.title.clone(), plot.clone())),
-                FigureContent::Scene(_) | FigureContent::Part(_) => None,
+                _ => None,
             })
         };
         let (title, mut plot) = plot_of(shown.first()?.1)?;

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_model::{
-    Axis, CheckState, Figure, FigureContent, Item, Plot, Report, Role, Scene, Series, Statement, StatusKind, Stroke, Study, StudyColumn,
-    StudyTable,
+    Axis, CheckState, Figure, FigureContent, Item, Look, Plot, Report, Role, Scene, Series, Statement, StatusKind, Stroke, Study,
+    StudyColumn, StudyTable,
 };
 use forcewright_study::nlp::Stop;
 use forcewright_study::optimise::{Active, Run};
@@ -330,10 +330,10 @@ impl Optimised {
             Some((self.before.figures.iter().find(|f| f.id == new.id)?, new))
         };
         let mut figures = Vec::new();
-        if let Some((old, new)) = pair(|c| matches!(c, FigureContent::Scene(_)))
-            && let (FigureContent::Scene(old), FigureContent::Scene(new)) = (&old.content, &new.content)
+        if let Some((old, new)) = pair(|c| c.still().is_some())
+            && let (Some(old), Some(new)) = (old.content.still(), new.content.still())
         {
-            figures.push(shapes(old, new));
+            figures.push(shapes(&old, &new));
         }
         if let Some((old, new)) = pair(|c| matches!(c, FigureContent::Plot(_)))
             && let (FigureContent::Plot(old), FigureContent::Plot(plot)) = (&old.content, &new.content)
@@ -492,6 +492,11 @@ fn shapes(old: &Scene, new: &Scene) -> Figure {
             };
             Some(Item::Body { corners: corners.clone(), role })
         }
+        // What stays is drawn as it is, of the old design its outline only.
+        Item::Body { corners, role: Role::Named(Look::Plate, _) } if before => {
+            Some(Item::Body { corners: corners.clone(), role: Role::Undeformed })
+        }
+        Item::Body { role: Role::Named(Look::Plate, _), .. } => Some(item.clone()),
         Item::Line { role: Role::Envelope | Role::Construction, .. } | Item::Support { .. } if !before => Some(item.clone()),
         _ => None,
     };

@@ -122,11 +122,16 @@ impl Synthesised {
     }
 
     fn shapes(&self) -> Vec<Figure> {
-        let scene = |(id, (i, design)): (&'static str, (usize, &Designed))| {
-            let own = design.report.figures.iter().find(|f| matches!(f.content, FigureContent::Scene(_)))?;
-            Some(Figure { id, title: format!("Design {}, {}: {}", i + 1, design.proposal.title, own.title), ..own.clone() })
+        let shape = |(id, (i, design)): (&'static str, (usize, &Designed))| {
+            let (own, scene) = design.report.figures.iter().find_map(|f| Some((f, f.content.still()?)))?;
+            Some(Figure {
+                id,
+                title: format!("Design {}, {}: {}", i + 1, design.proposal.title, own.title),
+                content: FigureContent::Scene(scene),
+                ..own.clone()
+            })
         };
-        SHAPES.into_iter().zip(self.designs.iter().enumerate()).filter_map(scene).collect()
+        SHAPES.into_iter().zip(self.designs.iter().enumerate()).filter_map(shape).collect()
     }
 
     /// The main curve of the first designs.
@@ -134,7 +139,7 @@ impl Synthesised {
         let plot_of = |report: &Report| {
             report.figures.iter().find_map(|f| match &f.content {
                 FigureContent::Plot(plot) => Some((f.title.clone(), plot.clone())),
-                FigureContent::Scene(_) | FigureContent::Part(_) => None,
+                _ => None,
             })
         };
         let (title, mut plot) = plot_of(&self.designs.first()?.report)?;

@@ -44,7 +44,7 @@ impl Toleranced {
     fn required_bands(&self, id: &str) -> Vec<HorizontalBand> {
         let plot = self.nominal.figures.iter().find(|f| f.id == id).and_then(|f| match &f.content {
             FigureContent::Plot(plot) => Some(plot.bands.clone()),
-            FigureContent::Scene(_) | FigureContent::Part(_) => None,
+            _ => None,
         });
         plot.unwrap_or_default()
     }

@@ -22,6 +22,7 @@ use crate::path::{Flaws, NormalError, SidePath};
 use crate::release::Release;
 use crate::spec::{self, Spec};
 use crate::springs::{Bank, Spring};
+use crate::study::Scatter;
 
 /// A design, ready to be analysed. SI units.
 #[derive(Clone, Debug)]
@@ -52,6 +53,8 @@ pub struct Design {
     pub requirements: Option<Requirements>,
     /// Where means are taken, from and to, m; by default the stroke without undercut.
     pub window_m: Option<[f64; 2]>,
+    /// The numbers that have a `±`, for what each of them does.
+    pub(crate) scatter: Option<Arc<Scatter>>,
     /// Units in which people are shown results.
     pub units: DisplayUnits,
 }
@@ -246,6 +249,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         friction: si(&spec.design.friction),
         requirements,
         window_m,
+        scatter: Scatter::of(spec).map(Arc::new),
         units: display_units(spec),
     })
 }

@@ -1,13 +1,15 @@
 //! Curves and figures of a result.
 
+use std::fmt::Write as _;
+
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
-use forcewright_model::{Axis, Branch, Curve, Figure, FigureContent, HorizontalBand, Plot, Series, Stroke, VerticalSpan};
+use forcewright_model::{Axis, BarRow, Bars, Branch, Curve, Figure, FigureContent, HorizontalBand, Plot, Series, Stroke, VerticalSpan};
 
 use crate::analysis::{Behaviour, Measured, Station, pressure_angle};
 use crate::design::Design;
 use crate::motion::Moment;
 use crate::path::curvature_per_m;
-use crate::scene::scene;
+use crate::scene::{comb, film};
 
 fn travel_axis(design: &Design) -> Axis {
     Axis { name: "travel", label: "Travel s".to_owned(), dimension: Dimension::Length, display: design.units.travel.clone() }
@@ -120,24 +122,42 @@ fn motion_curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
     ]
 }
 
+/// Rows of a bar chart.
+const BARS: usize = 12;
+
 /// Every figure of a report.
 pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Figure> {
     if behaviour.stations.is_empty() {
         return Vec::new();
     }
-    let middle = &behaviour.stations[behaviour.stations.len() / 2];
-    let mut all = vec![Figure {
-        id: "mechanism",
-        title: "Mechanism".to_owned(),
-        caption: format!("At a travel of {}, in the middle of the stroke.", format_si(middle.travel_m, &design.units.travel, 4)),
-        content: FigureContent::Scene(scene(design, behaviour, middle)),
-    }];
+    let mut all: Vec<Figure> = mechanism_figure(design, behaviour).into_iter().collect();
     all.push(force_figure(design, behaviour, measured));
+    all.extend(sensitivity_figure(design, behaviour, measured));
     all.extend(motion_figure(design, behaviour, measured));
+    all.push(profile_figure(design, behaviour));
     all.push(curvature_figure(design, behaviour));
     all.push(contact_figure(design, behaviour));
     all.extend(crate::profile_figures::figure(design, behaviour));
     all
+}
+
+fn mechanism_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
+    let film = film(design, behaviour, travel_axis(design))?;
+    Some(Figure {
+        id: "mechanism",
+        title: "Mechanism over its travel".to_owned(),
+        caption: "Choose a travel below the picture. The arrow is as long as the force without friction is large.".to_owned(),
+        content: FigureContent::Film(film),
+    })
+}
+
+fn profile_figure(design: &Design, behaviour: &Behaviour) -> Figure {
+    Figure {
+        id: "profile",
+        title: "Profile of the cam and curvature of the path".to_owned(),
+        caption: "Lines across the path as it was meant, as long as it is curved there: where they pass the dashed line, the path is curved more sharply than the roller and the cam is undercut. The lower part of the right side, where it is curved most; lines beyond r/ϱ = 2 are cut off.".to_owned(),
+        content: FigureContent::Scene(comb(design, behaviour)),
+    }
 }
 
 fn series(behaviour: &Behaviour, label: &str, stroke: Stroke, value: impl Fn(&Station) -> f64) -> Series {
@@ -149,45 +169,162 @@ fn plot(x: Axis, y: Axis, series: Vec<Series>) -> Plot {
     Plot { x, y, series, bands: Vec::new(), levels: Vec::new(), spans: Vec::new(), markers: Vec::new(), from_zero: false }
 }
 
+/// Part of the height of a picture above and below what has to be seen in it.
+const MARGIN: f64 = 0.15;
+
+/// The forces that a picture shows, N: those over the window, the band that is required, and some room.
+fn shown_n(design: &Design, behaviour: &Behaviour) -> [f64; 2] {
+    let mut all: Vec<f64> = behaviour.window.iter().flat_map(|s| [s.up.force_n, s.down.force_n, s.still.force_n]).collect();
+    if let Some((law, band)) = design.requirements.as_ref().and_then(|r| r.force.as_ref()) {
+        all.extend(behaviour.window.iter().map(|s| law.force_n(s.travel_m)[0]).flat_map(|f| [f * (1.0 - band), f * (1.0 + band)]));
+    }
+    let finite = all.iter().filter(|f| f.is_finite());
+    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(*f), b.max(*f)]);
+    if low > high {
+        return [f64::NEG_INFINITY, f64::INFINITY];
+    }
+    // A force that hardly varies still shows some of its size.
+    let room = (MARGIN * (high - low)).max(0.01 * high.abs().max(low.abs()));
+    [low - room, high + room]
+}
+
+/// A line from the window outwards, as far as it stays within the picture: at the start of an undercut cam the force falls far below.
+fn within(line: Series, window_m: [f64; 2], [low, high]: [f64; 2]) -> Series {
+    let points: Vec<[f64; 2]> = line.x.iter().zip(&line.y).map(|(x, y)| [*x, *y]).collect();
+    let first = points.partition_point(|p| p[0] < window_m[0]).min(points.len());
+    let last = points.partition_point(|p| p[0] <= window_m[1]).max(first);
+    let inside = |p: &[f64; 2]| (low..=high).contains(&p[1]);
+    // Where the line leaves, between a point inside and its neighbour outside.
+    let edge = |a: &[f64; 2], b: &[f64; 2]| {
+        let y = b[1].clamp(low, high);
+        [a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]), y]
+    };
+    let leaves = |outwards: &mut dyn Iterator<Item = &[f64; 2]>, from: Option<&[f64; 2]>| {
+        let (mut kept, mut before) = (Vec::new(), from.copied());
+        for p in outwards {
+            if !inside(p) {
+                kept.extend(before.map(|b| edge(&b, p)).filter(|p| p.iter().all(|v| v.is_finite())));
+                break;
+            }
+            kept.push(*p);
+            before = Some(*p);
+        }
+        kept
+    };
+    let mut all = leaves(&mut points[..first].iter().rev(), points.get(first));
+    all.reverse();
+    all.extend(&points[first..last]);
+    all.extend(leaves(&mut points[last..].iter(), last.checked_sub(1).and_then(|i| points.get(i))));
+    Series { x: all.iter().map(|p| p[0]).collect(), y: all.iter().map(|p| p[1]).collect(), ..line }
+}
+
+/// The loop over the window: up one way, down the other.
+fn friction_loop(behaviour: &Behaviour) -> Series {
+    let there = behaviour.window.iter().map(|s| [s.travel_m, s.up.force_n]);
+    let back = behaviour.window.iter().rev().map(|s| [s.travel_m, s.down.force_n]);
+    let (x, y) = there.chain(back).map(|[x, y]| (x, y)).unzip();
+    Series { label: "lost in a cycle".to_owned(), x, y, stroke: Stroke::Area }
+}
+
 fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Figure {
     let force = &design.units.force;
-    let mut all = vec![series(behaviour, "without friction", Stroke::Reference, |s| s.still.force_n)];
+    let shown = shown_n(design, behaviour);
+    let line = |label: &str, stroke: Stroke, value: fn(&Station) -> f64| {
+        within(series(behaviour, label, stroke, value), behaviour.window_m, shown)
+    };
+    let mut all = vec![line("without friction", Stroke::Reference, |s| s.still.force_n)];
     // Without friction both directions are the same line.
     if design.built.arm_m > 0.0 {
-        all.push(series(behaviour, "down", Stroke::Second, |s| s.down.force_n));
-        all.push(series(behaviour, "up", Stroke::Main, |s| s.up.force_n));
+        all.insert(0, friction_loop(behaviour));
+        all.push(line("down", Stroke::Second, |s| s.down.force_n));
+        all.push(line("up", Stroke::Main, |s| s.up.force_n));
+    } else {
+        all[0].stroke = Stroke::Main;
     }
     let mut plot = plot(travel_axis(design), force_axis(design, "force", "Force F"), all);
-    if let Some((law, band)) = design.requirements.as_ref().and_then(|r| r.force.as_ref()) {
-        let percent = format_number(100.0 * band, 3);
-        if law.is_constant() {
-            let [level, _] = law.force_n(0.0);
-            plot.bands.push(HorizontalBand {
-                from: level * (1.0 - band),
-                to: level * (1.0 + band),
-                extent: Some((behaviour.window_m[0], behaviour.window_m[1])),
-                label: format!("{} ± {percent} % (required)", format_si(level, force, 4)),
-            });
-        } else {
-            for (sign, label) in [(1.0 + band, format!("required + {percent} %")), (1.0 - band, format!("required − {percent} %"))] {
-                plot.series.push(series(behaviour, &label, Stroke::Limit, |s| sign * law.force_n(s.travel_m)[0]));
-            }
-        }
-    }
+    require(design, behaviour, &mut plot);
     let [from, to] = behaviour.window_m;
     plot.spans.push(VerticalSpan { from, to, label: "window".to_owned() });
     let mut caption = "The force on the slider at rest, moving along its travel and back.".to_owned();
     if let (Some(area), Some(up), Some(down)) = (measured.get("loop_area"), measured.get("force_up_mean"), measured.get("force_down_mean"))
     {
         let joule = Unit::parse("J").unwrap_or_else(|_| Unit::si(Dimension::Energy));
-        caption.push_str(&format!(
+        let _ = write!(
+            caption,
             " Over the window {} up and {} down in the mean; a cycle loses {}.",
             format_si(up, force, 4),
             format_si(down, force, 4),
             format_si(area, &joule, 3)
-        ));
+        );
+    }
+    let outside = behaviour.stations.iter().map(|s| s.still.force_n).filter(|f| !(shown[0]..=shown[1]).contains(f));
+    let [least, most] = outside.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f), b.max(f)]);
+    if least < shown[0] {
+        let _ = write!(caption, " Outside the window it falls to {}, below the picture.", format_si(least, force, 3));
+    }
+    if most > shown[1] {
+        let _ = write!(caption, " Outside the window it rises to {}, above the picture.", format_si(most, force, 3));
     }
     Figure { id: "force", title: "Force over the travel".to_owned(), caption, content: FigureContent::Plot(plot) }
+}
+
+/// The force that is required, as a band or, where it is not the same everywhere, as its edges.
+fn require(design: &Design, behaviour: &Behaviour, plot: &mut Plot) {
+    let Some((law, band)) = design.requirements.as_ref().and_then(|r| r.force.as_ref()) else { return };
+    let percent = format_number(100.0 * band, 3);
+    if law.is_constant() {
+        let [level, _] = law.force_n(0.0);
+        plot.bands.push(HorizontalBand {
+            from: level * (1.0 - band),
+            to: level * (1.0 + band),
+            extent: Some((behaviour.window_m[0], behaviour.window_m[1])),
+            label: format!("{} ± {percent} % (required)", format_si(level, &design.units.force, 4)),
+        });
+        return;
+    }
+    for (sign, label) in [(1.0 + band, format!("required + {percent} %")), (1.0 - band, format!("required − {percent} %"))] {
+        let points = behaviour.window.iter().map(|s| (s.travel_m, sign * law.force_n(s.travel_m)[0]));
+        let (x, y) = points.unzip();
+        plot.series.push(Series { label, x, y, stroke: Stroke::Limit });
+    }
+}
+
+/// What each `±` of the file does to the force, the largest first.
+fn sensitivity_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Option<Figure> {
+    let effects = design.scatter.as_ref()?.effects(design, behaviour);
+    let mean = f64::midpoint(measured.get("force_up_mean")?, measured.get("force_down_mean")?);
+    let all = effects.len();
+    let mut rows: Vec<BarRow> =
+        effects.into_iter().map(|e| BarRow { label: e.label, ends: vec![e.mean_n.map(|n| n / mean), e.deviation] }).collect();
+    rows.retain(|row| row.ends.iter().flatten().all(|v| v.is_finite()));
+    let reach = |row: &BarRow| row.ends.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    rows.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
+    rows.truncate(BARS);
+    if rows.is_empty() {
+        return None;
+    }
+    let left = all - rows.len();
+    let required = design.requirements.as_ref().is_some_and(|r| r.force.is_some());
+    let deviation =
+        if required { "largest deviation of the force from what is required" } else { "half width of the band that the force needs" };
+    let percent = Unit::parse("%").unwrap_or_else(|_| Unit::si(Dimension::Ratio));
+    let axis = Axis { name: "change", label: "Change".to_owned(), dimension: Dimension::Ratio, display: percent };
+    let mut caption =
+        "One number at the lower end of its tolerance (outlined) and at the upper end (filled), all others as they are, on the same cam."
+            .to_owned();
+    if left > 0 {
+        let _ = write!(caption, " {left} more {}.", if left == 1 { "is left out" } else { "are left out" });
+    }
+    Some(Figure {
+        id: "sensitivity",
+        title: "What each tolerance does to the force".to_owned(),
+        caption,
+        content: FigureContent::Bars(Bars {
+            axis,
+            series: vec![("mean force, up and down, of itself".to_owned(), Stroke::Main), (deviation.to_owned(), Stroke::Second)],
+            rows,
+        }),
+    })
 }
 
 fn motion_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Option<Figure> {

@@ -53,6 +53,8 @@ pub(crate) struct Drawn {
     pub range_m: [f64; 2],
     /// Where it begins, m.
     pub first: Vector,
+    /// Where the plate ends sideways below that, m.
+    pub relief_m: f64,
     /// The arcs from the lower end to the upper one, in the coordinates of the side.
     pub arcs: Arcs,
 }
@@ -69,9 +71,22 @@ pub(crate) fn drawn(design: &Design, behaviour: &Behaviour) -> Result<[Drawn; SI
             message: format!("the profile of the cam cannot be drawn with arcs: {error}"),
             help: "allow a larger `parts.chord_error`".to_owned(),
         })?;
-        Ok(Drawn { side, range_m: [start, to], first: curve(0.0).point_m, arcs })
+        Ok(Drawn { side, range_m: [start, to], first: curve(0.0).point_m, relief_m: relief_m(behaviour, side), arcs })
     };
     Ok([one(0)?, one(1)?])
+}
+
+/// Room between the lowest roller and the plate beside it, in roller radii.
+const ROOM: f64 = 0.1;
+
+/// Where the plate ends sideways below its profile, m: the path begins aslant, so the lowest roller hangs below the first point of the
+/// profile, and a plate straight down from there would be in its way.
+pub(crate) fn relief_m(behaviour: &Behaviour, side: usize) -> f64 {
+    let [from, _] = behaviour.cut.range_m();
+    let [x, _] = behaviour.mechanism.paths[side].at(from).at;
+    let sense = behaviour.mechanism.springs.sense();
+    // Between rollers near each other something must be left.
+    (x - sense * (1.0 + ROOM) * behaviour.mechanism.roller_m).max(0.1 * x)
 }
 
 /// The exact profile: the path offset by the roller.
@@ -357,15 +372,16 @@ fn ends(drawn: &Drawn) -> [Vector; 2] {
 fn plate(making: &Making, profiles: &[Drawn; SIDES]) -> Profile {
     let [right, left] = [ends(&profiles[0]), ends(&profiles[1]).map(mirrored)];
     let bottom = right[0][1].min(left[0][1]) - making.base_m;
-    let start_m = [left[0][0], bottom];
+    let [right_foot, left_foot] = [profiles[0].relief_m.min(right[0][0]), (-profiles[1].relief_m).max(left[0][0])];
+    let start_m = [left_foot, bottom];
     let line = |to_m: Vector| Segment::Line { to_m };
-    let mut segments = vec![line([right[0][0], bottom]), line(right[0])];
+    let mut segments = vec![line([right_foot, bottom]), line([right_foot, right[0][1]]), line(right[0])];
     segments.extend(profiles[0].arcs.segments.iter().cloned());
     segments.push(line(left[1]));
     // Down the left side: its profile the other way round.
     let up = Profile { start_m: left[0], segments: profiles[1].arcs.segments.iter().map(mirror).collect() };
     segments.extend(up.reversed().segments);
-    segments.push(line(start_m));
+    segments.extend([line([left_foot, left[0][1]]), line(start_m)]);
     Profile { start_m, segments }
 }
 
@@ -376,10 +392,12 @@ fn outer_plate(making: &Making, drawn: &Drawn) -> Profile {
     let bottom = low[1] - making.base_m;
     let line = |to_m: Vector| Segment::Line { to_m };
     let up = Profile { start_m: low, segments: drawn.arcs.segments.clone() };
+    // A thin wall is left in any case.
+    let foot = drawn.relief_m.max(low[0]).min(out - 0.1 * making.wall_m);
     let mut segments = vec![line([out, bottom]), line([out, high[1]]), line(high)];
     segments.extend(up.reversed().segments);
-    segments.push(line([low[0], bottom]));
-    let right = Profile { start_m: [low[0], bottom], segments };
+    segments.extend([line([foot, low[1]]), line([foot, bottom])]);
+    let right = Profile { start_m: [foot, bottom], segments };
     if drawn.side == 0 {
         return right;
     }

@@ -2,6 +2,7 @@
 
 mod knobs;
 mod many;
+mod sensitivity;
 mod task;
 
 use forcewright_base::diagnostics::Diagnostics;
@@ -13,6 +14,8 @@ use crate::design::Design;
 use crate::spec::Spec;
 use knobs::Knobs;
 use many::Many;
+
+pub(crate) use sensitivity::Scatter;
 
 /// The design as studies that look at many see it.
 pub(crate) fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use forcewright_base::units::{Unit, format_number, format_si};
 use forcewright_model::{
-    Check, CheckState, Figure, FigureContent, Metric, Plot, Report, Sense, Series, Statement, StatusKind, Study, StudyColumn,
+    Check, CheckState, Figure, FigureContent, Film, Metric, Plot, Report, Sense, Series, Statement, StatusKind, Stroke, Study, StudyColumn,
 };
 
 use crate::escape::{each, escape, path, prose};
@@ -267,20 +267,52 @@ fn figures(report: &Report) -> String {
 pub(crate) fn figure(number: usize, figure: &Figure) -> String {
     let (class, data) = match &figure.content {
         FigureContent::Plot(plot) => ("plot", data_table(number, plot)),
-        FigureContent::Scene(_) | FigureContent::Part(_) => ("scene", String::new()),
+        FigureContent::Bars(_) => ("plot", String::new()),
+        FigureContent::Scene(_) | FigureContent::Film(_) | FigureContent::Part(_) => ("scene", String::new()),
+    };
+    let picture = match &figure.content {
+        FigureContent::Film(film) => film_with_buttons(figure, film),
+        _ => svg::figure(figure),
     };
     format!(
         "<figure id=\"figure-{}\" class=\"{class}\">\n{}<figcaption><strong>Figure {number}. {}.</strong> {}</figcaption>\n{data}</figure>\n",
         escape(figure.id),
-        svg::figure(figure),
+        picture,
         escape(figure.title.trim_end_matches('.')),
         prose(&figure.caption)
     )
 }
 
+/// A film with a button for each frame, which arrow keys move between, and a strip of labels, which the pointer moves along. No script:
+/// the style of the drawing shows the frame whose button is pressed.
+fn film_with_buttons(figure: &Figure, film: &Film) -> String {
+    let Some(chosen) = svg::film::chosen(film) else { return svg::figure(figure) };
+    let id = format!("film-{}", escape(figure.id));
+    let (mut buttons, mut labels) = (String::new(), String::new());
+    for (i, frame) in film.frames.iter().enumerate() {
+        let class = svg::film::class(i);
+        let checked = if i == chosen { " checked=\"checked\"" } else { "" };
+        // What is read aloud begins with what is seen.
+        let short = svg::film::short_place(film, frame.at);
+        let place = format!("{short} {}", film.axis.display.pretty()).trim_end().to_owned();
+        let said = if frame.note.is_empty() { place } else { format!("{place}: {}", frame.note) };
+        let _ = writeln!(
+            buttons,
+            "<input type=\"radio\" name=\"{id}\" id=\"{id}-{i}\" class=\"{class}\" aria-label=\"{}\"{checked} />",
+            escape(&said)
+        );
+        let _ = write!(labels, "<label for=\"{id}-{i}\" class=\"f {class}\" title=\"{}\">{}</label>", escape(&said), escape(&short));
+    }
+    let legend = escape(&over_unit(&film.axis.label, &film.axis.display));
+    format!(
+        "<fieldset class=\"film\" id=\"{id}\">\n<legend>{legend}</legend>\n{buttons}{}<div class=\"strip\">{labels}</div>\n</fieldset>\n",
+        svg::film_for_page(figure, film, &id)
+    )
+}
+
 /// Some points of every line of a plot, behind a fold.
 fn data_table(number: usize, plot: &Plot) -> String {
-    let lines: Vec<&Series> = plot.series.iter().filter(|s| !s.x.is_empty() && !s.y.is_empty()).collect();
+    let lines: Vec<&Series> = plot.series.iter().filter(|s| s.stroke != Stroke::Area && !s.x.is_empty() && !s.y.is_empty()).collect();
     if lines.is_empty() {
         return String::new();
     }

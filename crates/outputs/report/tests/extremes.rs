@@ -5,7 +5,10 @@
 #[allow(unreachable_pub, dead_code, reason = "shared; this file needs a part of it")]
 mod fixture;
 
-use forcewright_model::{ColourScale, HorizontalLine, Item, Marker, Plot, Role, Scene, Series, Stroke, SupportKind, VerticalSpan};
+use forcewright_model::{
+    BarRow, ColourScale, Figure, FigureContent, HorizontalLine, Item, Look, Marker, Plot, Role, Scene, Series, Stroke, SupportKind,
+    VerticalSpan,
+};
 use forcewright_report::svg::{self, Drawing, PlotSize, Rect, SceneSize};
 use forcewright_report::{csv, html, json};
 use roxmltree::Document;
@@ -109,6 +112,8 @@ fn scenes_of_anything() {
                     line(Some(vec![a, b])),
                     line(None),
                     Item::Body { corners: vec![at, [b, b]], role: Role::Undeformed },
+                    Item::Body { corners: vec![at, [b, b], [b, 1.0]], role: Role::Named(Look::Plate, "plate") },
+                    Item::Disc { centre: at, radius_m: b, role: Role::Named(Look::Moving, "roller") },
                     Item::Support { at, kind, outward: [a, a] },
                     Item::Support { at, kind: SupportKind::Pinned, outward: [b, 0.0] },
                     Item::Arrow { from: at, to: [b, a], label: "F".to_owned() },
@@ -121,6 +126,31 @@ fn scenes_of_anything() {
                 description: String::new(),
             };
             sound(&svg::draw_scene(&scene, SceneSize::default()));
+        }
+    }
+}
+
+#[test]
+fn films_and_bars_of_anything() {
+    let figure = |content| Figure { id: "any", title: String::new(), caption: String::new(), content };
+    for a in NUMBERS {
+        for b in NUMBERS {
+            let mut film = fixture::film();
+            film.frames.truncate(3);
+            film.frames[0].at = a;
+            film.frames[1].items.push(Item::Disc { centre: [a, b], radius_m: a, role: Role::Deformed });
+            film.frames[2].note = "x".repeat(300);
+            for chosen in 0..4 {
+                film.chosen = chosen;
+                sound(&svg::draw_figure(&figure(FigureContent::Film(film.clone()))));
+            }
+            let mut bars = fixture::bars();
+            bars.rows.push(BarRow { label: "short of ends".to_owned(), ends: vec![[a, b]] });
+            bars.rows.push(BarRow { label: String::new(), ends: Vec::new() });
+            sound(&svg::draw_figure(&figure(FigureContent::Bars(bars.clone()))));
+            bars.series.clear();
+            bars.rows.truncate(1);
+            sound(&svg::draw_figure(&figure(FigureContent::Bars(bars))));
         }
     }
 }

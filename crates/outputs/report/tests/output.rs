@@ -244,6 +244,16 @@ fn text_from_files_never_becomes_markup() {
                 plot.markers[0].note = String::from(nasty);
             }
             FigureContent::Scene(scene) => scene.description = nasty.to_owned(),
+            FigureContent::Film(film) => {
+                film.axis.label = String::from(nasty);
+                film.frames[3].note = String::from(nasty);
+                film.stage.description = String::from(nasty);
+            }
+            FigureContent::Bars(bars) => {
+                bars.axis.label = String::from(nasty);
+                bars.rows[0].label = String::from(nasty);
+                bars.series[0].0 = String::from(nasty);
+            }
             FigureContent::Part(set) => set.parts[0].name = nasty.to_owned(),
         }
     }
@@ -271,6 +281,102 @@ fn figures_stand_alone_and_nothing_in_them_overlaps() {
         assert!(child("style").unwrap().text().unwrap().contains("--fw-ink"));
         assert!(drawing.texts.iter().all(|t| file.contains(&t.text)));
     }
+}
+
+/// The figure of a film in the page of the fixture.
+fn film_page() -> String {
+    let page = html::page(&fixture::report());
+    let start = page.find("<figure id=\"figure-film\"").unwrap();
+    page[start..start + page[start..].find("</figure>").unwrap() + 9].to_owned()
+}
+
+#[test]
+fn a_film_has_a_button_and_a_label_for_each_frame_and_shows_one() {
+    let markup = film_page();
+    nothing_is_requested(&markup);
+    let document = parse(&markup);
+    let all = |name: &str| document.descendants().filter(|n| n.tag_name().name() == name).collect::<Vec<_>>();
+    let fieldset = all("fieldset")[0];
+    assert_eq!((fieldset.attribute("id"), all("legend")[0].text()), (Some("film-film"), Some("Angle φ / deg")));
+    let (buttons, labels) = (all("input"), all("label"));
+    assert_eq!((buttons.len(), labels.len()), (25, 25));
+    for (i, (button, label)) in buttons.iter().zip(&labels).enumerate() {
+        assert_eq!((button.attribute("type"), button.attribute("name")), (Some("radio"), Some("film-film")));
+        assert_eq!((label.attribute("for"), button.attribute("checked").is_some()), (button.attribute("id"), i == 12));
+        // What is read aloud begins with what is seen.
+        assert!(button.attribute("aria-label").unwrap().starts_with(label.text().unwrap().trim_end_matches('…')), "{i}");
+        assert_eq!(button.parent(), Some(fieldset));
+    }
+    assert_eq!(labels[2].text(), Some("15"));
+    // Without a style all frames but the chosen one stay hidden.
+    let frames: Vec<_> = all("g").into_iter().filter(|g| g.attribute("class").is_some_and(|c| c.starts_with("k "))).collect();
+    assert_eq!(frames.len(), 25);
+    for (i, frame) in frames.iter().enumerate() {
+        assert_eq!(frame.attribute("display"), (i != 12).then_some("none"), "{i}");
+        assert_eq!(frame.parent().unwrap().tag_name().name(), "svg", "the style looks for children of the drawing");
+    }
+    let style = all("style")[0].text().unwrap();
+    for i in 0..25 {
+        assert!(style.contains(&format!("#film-film>.k{i}:checked~svg>.k{i}{{display:inline}}")), "{i}");
+        assert!(style.contains(&format!(".strip>label.k{i}:hover)>svg>g.k.k{i}{{display:inline}}")), "{i}");
+    }
+}
+
+#[test]
+fn frames_of_a_film_share_paper_scale_and_what_does_not_move() {
+    let mut figure = fixture::report().figures.into_iter().find(|f| f.id == "film").unwrap();
+    let page = film_page();
+    assert!(page.len() < 60_000, "{} bytes", page.len());
+    let mut sizes = Vec::new();
+    for chosen in 0..25 {
+        let FigureContent::Film(film) = &mut figure.content else { panic!("a film") };
+        film.chosen = chosen;
+        let drawing = svg::draw_figure(&figure);
+        texts_are_apart(&drawing);
+        assert!(drawing.texts.iter().any(|t| t.text.starts_with(&format!("Angle φ = {} deg: ", 7.5 * chosen as f64))), "{chosen}");
+        assert!(!drawing.svg.contains("display=") && drawing.svg.matches("class=\"k ").count() == 1, "one frame in a file");
+        sizes.push((drawing.width.to_bits(), drawing.height.to_bits()));
+        // The plate is in one place in all of them, and once in the page.
+        let plate = drawing.svg.lines().find(|l| l.contains("Z\"")).unwrap().to_owned();
+        assert_eq!(page.matches(&plate).count(), 1, "{chosen}");
+    }
+    sizes.dedup();
+    assert_eq!(sizes.len(), 1);
+    let FigureContent::Film(film) = &mut figure.content else { panic!("a film") };
+    film.chosen = 99;
+    assert!(svg::standalone(&figure).contains("180"), "the last one");
+    let FigureContent::Film(film) = &mut figure.content else { panic!("a film") };
+    film.frames.clear();
+    let still = svg::standalone(&figure);
+    assert!(still.contains("base") && !still.contains("class=\"k "));
+    texts_are_apart(&svg::draw_figure(&figure));
+}
+
+#[test]
+fn bars_reach_from_zero_to_both_ends() {
+    let figure = fixture::report().figures.into_iter().find(|f| f.id == "sensitivity").unwrap();
+    let drawing = svg::draw_figure(&figure);
+    let has = |text: &str| drawing.texts.iter().any(|t| t.text == text);
+    assert!(has("−6 … +6.1") && has("– … +0.5") && has("0 … +0.01") && has("thickness ± 0.02 mm"));
+    let document = Document::parse(&drawing.svg).unwrap();
+    let number = |n: &roxmltree::Node<'_, '_>, key: &str| n.attribute(key).unwrap().parse::<f64>().unwrap();
+    let bars: Vec<_> = document.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "rect"))).collect();
+    // The first row's bars of the mean force: the filled one to +6.1 %, the outlined one to −6 %.
+    let (filled, outlined) = (bars[0], bars[1]);
+    assert_eq!(outlined.attribute("fill"), Some("none"));
+    assert!((number(&filled, "width") / number(&outlined, "width") - 6.1 / 6.0).abs() < 1e-3);
+    assert!((number(&outlined, "x") + number(&outlined, "width") - number(&filled, "x")).abs() < 0.02, "both begin at zero");
+}
+
+#[test]
+fn a_region_is_filled_and_has_no_points_in_the_table() {
+    let mut report = fixture::report();
+    let FigureContent::Plot(plot) = &mut report.figures[1].content else { panic!("a plot") };
+    plot.series[0].stroke = Stroke::Area;
+    plot.series[0].label = "the region".to_owned();
+    let page = html::page(&report);
+    parse(&page);
+    assert!(page.contains("fill-opacity=\"0.2\"") && page.contains(">the region</text>") && !page.contains(">the region</th>"));
 }
 
 #[test]

@@ -48,7 +48,7 @@ const PAINTS: [(Paint, &str, &str, &str); 12] = [
     (Paint::Limit, "--fw-limit", "#b3123c", "#ff8095"),
     (Paint::Band, "--fw-band", "#00785a", "#3ccfa4"),
     (Paint::Span, "--fw-span", "#44619d", "#8fa9dd"),
-    (Paint::Body, "--fw-body", "#d3dae2", "#3a4450"),
+    (Paint::Body, "--fw-body", "#d3dae2", "#333c47"),
 ];
 
 impl Paint {

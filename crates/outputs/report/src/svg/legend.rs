@@ -12,6 +12,9 @@ const GAP: f64 = 18.0;
 /// Colours in a swatch of values.
 const STEPS: u8 = 10;
 
+/// Opacity of tinted regions.
+pub(super) const AREA: f64 = 0.2;
+
 /// What stands before a legend text.
 #[derive(Clone, Debug)]
 pub(super) enum Swatch {
@@ -25,6 +28,14 @@ pub(super) enum Swatch {
     Point,
     /// A rigid part.
     Body,
+    /// A solid that stays where it is.
+    Plate,
+    /// A rigid part that moves.
+    Moving,
+    /// A tinted region.
+    Area { paint: Paint },
+    /// A bar.
+    Bar { paint: Paint },
 }
 
 /// One entry.
@@ -90,6 +101,24 @@ fn swatch(canvas: &mut Canvas, swatch: &Swatch, x: f64, y: f64) {
                 &format!(r#"{} stroke-width="1.4""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)),
             );
         }
+        Swatch::Plate => {
+            canvas.rect(
+                &Rect::sized(x + 0.5 * SWATCH - 9.0, y - 7.0, 18.0, 14.0),
+                &format!(r#"{} stroke-width="1.4""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)),
+            );
+        }
+        Swatch::Moving => {
+            canvas.circle(
+                [x + 0.5 * SWATCH, y],
+                6.0,
+                &format!(r#"{} stroke-width="2""#, Paint::fill_and_stroke(Paint::Paper, Paint::Main)),
+            );
+        }
+        Swatch::Area { paint } => {
+            let r = Rect::sized(x, y - 6.0, SWATCH, 12.0);
+            canvas.rect(&r, &format!(r#"{} fill-opacity="{AREA}""#, paint.attributes("fill")));
+        }
+        Swatch::Bar { paint } => canvas.rect(&Rect::sized(x, y - 5.0, SWATCH, 10.0), &paint.attributes("fill")),
         Swatch::Point => {
             canvas.circle([x + 0.5 * SWATCH, y], 4.5, &format!(r#"{} stroke-width="2""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)));
         }

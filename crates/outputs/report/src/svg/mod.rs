@@ -1,8 +1,10 @@
 //! Figures as SVG. An element can stand in a page, where custom properties (`--fw-ink`, `--fw-main`, …) colour it for light, dark and
 //! paper, or in a file of its own; it needs no fonts, scripts or other files.
 
+mod bars;
 mod canvas;
 mod colour;
+pub(crate) mod film;
 mod legend;
 mod part;
 mod place;
@@ -18,7 +20,7 @@ pub use place::Rect;
 pub use plot::PlotSize;
 pub use scene::SceneSize;
 
-use forcewright_model::{Figure, FigureContent, Plot, Scene};
+use forcewright_model::{Figure, FigureContent, Film, Plot, Scene};
 
 /// A plot as an SVG element.
 pub fn plot(plot: &Plot, size: PlotSize) -> String {
@@ -40,21 +42,28 @@ pub fn draw_scene(scene: &Scene, size: SceneSize) -> Drawing {
     scene::draw(scene, size, "Mechanism", "")
 }
 
-/// A figure as an SVG element for a page, titled and described by the figure's words.
+/// A figure as an SVG element for a page, titled and described by the figure's words; of a film the chosen frame.
 pub fn figure(figure: &Figure) -> String {
     draw_figure(figure).svg
 }
 
-/// A figure with the places of its texts.
+/// A film as an SVG element for a page: all frames, of which the element `page_id` around it shows one.
+pub(crate) fn film_for_page(figure: &Figure, film: &Film, page_id: &str) -> String {
+    film::draw(film, SceneSize::default(), &figure.title, &figure.caption, film::Frames::All, page_id).svg
+}
+
+/// A figure with the places of its texts; of a film the chosen frame.
 pub fn draw_figure(figure: &Figure) -> Drawing {
     match &figure.content {
         FigureContent::Plot(p) => plot::draw(p, PlotSize::default(), &figure.title, &figure.caption),
+        FigureContent::Bars(b) => bars::draw(b, PlotSize::default().width, &figure.title, &figure.caption),
         FigureContent::Scene(s) => scene::draw(s, SceneSize::default(), &figure.title, &figure.caption),
+        FigureContent::Film(f) => film::draw(f, SceneSize::default(), &figure.title, &figure.caption, film::Frames::Chosen, ""),
         FigureContent::Part(p) => part::draw(p, SceneSize::default(), &figure.title, &figure.caption),
     }
 }
 
-/// A figure as a file of its own: light colours, white ground.
+/// A figure as a file of its own: light colours, white ground. Of a film the chosen frame.
 pub fn standalone(figure: &Figure) -> String {
     let drawing = draw_figure(figure);
     let style =

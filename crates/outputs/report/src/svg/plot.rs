@@ -42,13 +42,14 @@ const SPAN_ROW: f64 = 20.0;
 const EDGE: f64 = 14.0;
 
 /// How a stroke is painted: colour, thickness, dashes, squares along it.
-fn look(stroke: Stroke) -> (Paint, f64, &'static str, bool) {
+pub(super) fn look(stroke: Stroke) -> (Paint, f64, &'static str, bool) {
     match stroke {
         Stroke::Main => (Paint::Main, 2.6, "", false),
         Stroke::Second => (Paint::Second, 1.8, "", true),
         Stroke::Third => (Paint::Third, 2.2, "11 4 2.5 4", false),
         Stroke::Reference => (Paint::Reference, 1.8, "6 4", false),
         Stroke::Limit => (Paint::Limit, 2.0, "10 5", false),
+        Stroke::Area => (Paint::Reference, 0.0, "", false),
     }
 }
 
@@ -293,6 +294,12 @@ fn lines(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
     for series in &frame.plot.series {
         let (paint, width, dash, squares) = look(series.stroke);
         let pieces = pieces(frame, series);
+        if series.stroke == Stroke::Area {
+            for piece in &pieces {
+                canvas.polygon(piece, &format!(r#"{} fill-opacity="{}""#, paint.attributes("fill"), legend::AREA));
+            }
+            continue;
+        }
         canvas.open_stroke(paint, width, &format!(r#"stroke-linejoin="round" {}"#, dashed(dash)));
         for piece in &pieces {
             canvas.polyline(piece, "");
@@ -408,7 +415,8 @@ fn entries(plot: &Plot, beyond: &[Entry]) -> Vec<Entry> {
     let mut out = Vec::new();
     for series in plot.series.iter().filter(|s| !s.label.is_empty()) {
         let (paint, width, dash, squares) = look(series.stroke);
-        out.push(Entry { swatch: Swatch::Line { paint, width, dash, squares }, text: series.label.clone() });
+        let swatch = if series.stroke == Stroke::Area { Swatch::Area { paint } } else { Swatch::Line { paint, width, dash, squares } };
+        out.push(Entry { swatch, text: series.label.clone() });
     }
     out.extend(plot.bands.iter().map(|b| Entry { swatch: Swatch::Band, text: b.label.clone() }));
     out.extend(beyond.iter().cloned());
@@ -429,7 +437,7 @@ fn description(plot: &Plot, caption: &str) -> String {
         out.push_str(&text);
     };
     say(format!("Ordinate: {}. Abscissa: {}.", axis_title(&plot.y), axis_title(&plot.x)));
-    for s in &plot.series {
+    for s in plot.series.iter().filter(|s| s.stroke != Stroke::Area) {
         if let Some((low, high)) = extent(s.y.iter().copied().filter(|v| v.is_finite())) {
             say(format!("{}: from {} to {}.", s.label, number(&plot.y, low), number(&plot.y, high)));
         }

@@ -1,7 +1,7 @@
 //! Pictures of mechanisms.
 
 use forcewright_base::units::{Unit, format_si};
-use forcewright_model::{ColourScale, Item, Role, Scene};
+use forcewright_model::{ColourScale, Item, Look, Role, Scene};
 
 use super::canvas::{Anchor, Canvas, Drawing, Style, n};
 use super::colour::{self, Paint};
@@ -28,7 +28,7 @@ impl Default for SceneSize {
 
 /// Room around the mechanism for symbols and texts.
 const MARGIN: f64 = 46.0;
-const EDGE: f64 = 14.0;
+pub(super) const EDGE: f64 = 14.0;
 const LABEL: Style = Style::label(14.0, Paint::Ink);
 const SMALL: Style = Style::muted(13.0);
 const TITLE: Style = Style { size: 14.0, bold: true, paint: Paint::Ink, halo: false };
@@ -52,44 +52,90 @@ impl View {
         let width = width_m * self.scale;
         if width.is_finite() { width.clamp(1.4, 80.0) } else { 1.4 }
     }
+
+    fn radius(&self, radius_m: f64) -> f64 {
+        let radius = radius_m * self.scale;
+        if radius.is_finite() { radius.clamp(0.7, 4000.0) } else { 0.7 }
+    }
 }
 
 /// Draws a picture.
 pub(super) fn draw(scene: &Scene, size: SceneSize, title: &str, caption: &str) -> Drawing {
-    let side = |v: f64, least: f64, usual: f64| if v.is_finite() { v.clamp(least, 4000.0) } else { usual };
-    let (width, max_height) = (side(size.width, 360.0, 760.0), side(size.max_height, 240.0, 560.0));
-    let (view, height) = fit(scene, width, max_height);
+    let mut sheet = Sheet::new(&scene.items, scene.scale.as_ref(), size);
     let mut canvas = Canvas::default();
-    let mut placer = Placer::new(Rect::sized(EDGE, 4.0, width - 2.0 * EDGE, height - 8.0));
-    let symbol = (0.014 * (width + height)).clamp(11.0, 20.0);
-    let coloured: Vec<Coloured> = scene.items.iter().filter_map(|i| Coloured::of(i, &view, scene.scale.as_ref())).collect();
-    let mut done = Vec::new();
-    for item in &scene.items {
-        match Coloured::of(item, &view, scene.scale.as_ref()) {
-            // All lines of a role at once, so that their joints are clean.
-            Some(line) if !done.contains(&line.role) => {
-                done.push(line.role);
-                paint_coloured(&mut canvas, &coloured, line.role);
+    let mut placer = sheet.placer();
+    sheet.things(&mut canvas, &scene.items, &mut placer);
+    sheet.labels(&mut canvas, &scene.items, &mut placer);
+    let bottom = sheet.below(&mut canvas, scene, &entries(&scene.items, scene));
+    let words = if caption.is_empty() { scene.description.clone() } else { format!("{caption} {}", scene.description) };
+    canvas.finish(sheet.width, bottom, title, words.trim())
+}
+
+/// The paper of a picture: how large what is drawn on it becomes.
+pub(super) struct Sheet<'a> {
+    pub(super) width: f64,
+    height: f64,
+    view: View,
+    scale: Option<&'a ColourScale>,
+}
+
+impl<'a> Sheet<'a> {
+    /// A sheet on which all these things have room.
+    pub(super) fn new<'b>(items: impl IntoIterator<Item = &'b Item>, scale: Option<&'a ColourScale>, size: SceneSize) -> Self {
+        let side = |v: f64, least: f64, usual: f64| if v.is_finite() { v.clamp(least, 4000.0) } else { usual };
+        let (width, max_height) = (side(size.width, 360.0, 760.0), side(size.max_height, 240.0, 560.0));
+        let (view, height) = fit(items, width, max_height);
+        Self { width, height, view, scale }
+    }
+
+    /// Moves everything down to make room above it.
+    pub(super) fn lower(&mut self, by: f64) {
+        self.height += by;
+        self.view.centre[1] += by;
+    }
+
+    pub(super) fn placer(&self) -> Placer {
+        Placer::new(Rect::sized(EDGE, 4.0, self.width - 2.0 * EDGE, self.height - 8.0))
+    }
+
+    /// Draws everything but texts.
+    pub(super) fn things(&self, canvas: &mut Canvas, items: &[Item], placer: &mut Placer) {
+        let symbol = (0.014 * (self.width + self.height)).clamp(11.0, 20.0);
+        let coloured: Vec<Coloured> = items.iter().filter_map(|i| Coloured::of(i, &self.view, self.scale)).collect();
+        let mut done = Vec::new();
+        for item in items {
+            match Coloured::of(item, &self.view, self.scale) {
+                // All lines of a role at once, so that their joints are clean.
+                Some(line) if !done.contains(&line.role) => {
+                    done.push(line.role);
+                    paint_coloured(canvas, &coloured, line.role);
+                }
+                Some(_) => {}
+                None => paint(canvas, item, &self.view, symbol, placer),
             }
-            Some(_) => {}
-            None => paint(&mut canvas, item, &view, symbol, &mut placer),
+        }
+        for line in &coloured {
+            placer.add_line(&line.at, line.width, 1.0);
         }
     }
-    for line in &coloured {
-        placer.add_line(&line.at, line.width, 1.0);
+
+    /// Texts, when everything that they must not cover is known; returns their boxes.
+    pub(super) fn labels(&self, canvas: &mut Canvas, items: &[Item], placer: &mut Placer) -> Vec<Rect> {
+        labels(canvas, placer, items, &self.view)
     }
-    labels(&mut canvas, &mut placer, scene, &view);
-    let mut below = height;
-    let bar = scale_bar(&mut canvas, &view, &scene.display, width, below);
-    if let Some(scale) = &scene.scale {
-        let left = (bar + 40.0).max(0.4 * width);
-        below = colour_bar(&mut canvas, scale, left, width - EDGE - 14.0, below);
-    } else {
-        below += 44.0;
+
+    /// Scale bar, colours and legend; returns the height of the whole drawing.
+    pub(super) fn below(&mut self, canvas: &mut Canvas, scene: &Scene, entries: &[Entry]) -> f64 {
+        let mut below = self.height;
+        let bar = scale_bar(canvas, &self.view, &scene.display, self.width, below);
+        if let Some(scale) = &scene.scale {
+            let left = (bar + 40.0).max(0.4 * self.width);
+            below = colour_bar(canvas, scale, left, self.width - EDGE - 14.0, below);
+        } else {
+            below += 44.0;
+        }
+        legend::draw(canvas, entries, EDGE, self.width - EDGE, below + 8.0) + 6.0
     }
-    let bottom = legend::draw(&mut canvas, &entries(scene), EDGE, width - EDGE, below + 8.0);
-    let words = if caption.is_empty() { scene.description.clone() } else { format!("{caption} {}", scene.description) };
-    canvas.finish(width, bottom + 6.0, title, words.trim())
 }
 
 fn points(item: &Item) -> &[[f64; 2]] {
@@ -97,18 +143,25 @@ fn points(item: &Item) -> &[[f64; 2]] {
         Item::Line { points, .. } => points,
         Item::Body { corners, .. } => corners,
         Item::Support { at, .. } | Item::Hinge { at } | Item::Label { at, .. } | Item::Marker { at, .. } => std::slice::from_ref(at),
+        Item::Disc { centre, .. } => std::slice::from_ref(centre),
         Item::Arrow { .. } => &[],
     }
 }
 
+/// Places that an item reaches beyond its points.
+fn beyond(item: &Item) -> Vec<[f64; 2]> {
+    match item {
+        Item::Arrow { from, to, .. } => vec![*from, *to],
+        Item::Disc { centre: [x, y], radius_m: r, .. } => vec![[x - r, y - r], [x + r, y + r]],
+        _ => Vec::new(),
+    }
+}
+
 /// The largest scale at which everything fits, and the height that the picture then takes.
-fn fit(scene: &Scene, width: f64, max_height: f64) -> (View, f64) {
-    let arrows = scene.items.iter().flat_map(|i| if let Item::Arrow { from, to, .. } = i { vec![*from, *to] } else { Vec::new() });
-    let all: Vec<[f64; 2]> = scene
-        .items
-        .iter()
-        .flat_map(|i| points(i).iter().copied())
-        .chain(arrows)
+fn fit<'a>(items: impl IntoIterator<Item = &'a Item>, width: f64, max_height: f64) -> (View, f64) {
+    let all: Vec<[f64; 2]> = items
+        .into_iter()
+        .flat_map(|i| points(i).iter().copied().chain(beyond(i)))
         .filter_map(|p| Some([ticks::sane(p[0])?, ticks::sane(p[1])?]))
         .collect();
     let r = if all.is_empty() { Rect::sized(0.0, 0.0, 0.0, 0.0) } else { symbols::around(&all) };
@@ -127,10 +180,14 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
             let at: Vec<[f64; 2]> = points.iter().filter_map(|p| view.at(*p)).collect();
             let width = view.thickness(*width_m);
             match role {
-                Role::Undeformed => placer.add_line(&at, 1.5, 0.6),
-                Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy => placer.add_line(&at, width, 1.0),
+                Role::Undeformed | Role::Named(Look::Plate | Look::Moving | Look::Rail | Look::Wire | Look::Limit, _) => {
+                    placer.add_line(&at, 1.5, 0.6);
+                }
+                Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy | Role::Named(Look::Bar, _) => {
+                    placer.add_line(&at, width, 1.0);
+                }
                 Role::UndeformedCopy => placer.add_line(&at, 1.5, 0.5),
-                Role::Construction | Role::Envelope | Role::Plane | Role::PlaneCopy => placer.add_line(&at, 1.0, 0.3),
+                Role::Construction | Role::Envelope | Role::Plane | Role::PlaneCopy | Role::Named(..) => placer.add_line(&at, 1.0, 0.3),
             }
             plain(canvas, &at, width, *role);
         }
@@ -142,6 +199,7 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
                 }
                 Role::Plane => canvas.polygon(&at, &format!(r#"{} stroke-width="1""#, Paint::fill_and_stroke(Paint::Main, Paint::Ink))),
                 Role::PlaneCopy => canvas.polygon(&at, &format!(r#"{} stroke-width="1""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink))),
+                Role::Named(look, _) => canvas.polygon(&at, &filled(*look)),
                 _ => canvas.polygon(&at, &format!(r#"fill="none" {}"#, outline(*role))),
             }
             if matches!(role, Role::Deformed | Role::DeformedCopy) && !at.is_empty() {
@@ -150,6 +208,11 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
             if let Some(first) = at.first() {
                 let closed: Vec<[f64; 2]> = at.iter().chain([first]).copied().collect();
                 placer.add_line(&closed, 1.5, if matches!(role, Role::Deformed) { 1.0 } else { 0.6 });
+            }
+        }
+        Item::Disc { centre, radius_m, role } => {
+            if let Some(p) = view.at(*centre) {
+                disc(canvas, placer, p, view.radius(*radius_m), *role);
             }
         }
         Item::Support { at, kind, outward } => {
@@ -179,15 +242,65 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
     }
 }
 
+/// A round body.
+fn disc(canvas: &mut Canvas, placer: &mut Placer, at: [f64; 2], radius: f64, role: Role) {
+    let attributes = match role {
+        Role::Named(look, _) => filled(look),
+        Role::Deformed | Role::DeformedCopy => format!(r#"{} stroke-width="1.4""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)),
+        _ => format!(r#"fill="none" {}"#, outline(role)),
+    };
+    canvas.circle(at, radius, &attributes);
+    let ring: Vec<[f64; 2]> = (0..=16_u8)
+        .map(|i| {
+            let (sin, cos) = forcewright_base::maths::sin_cos(f64::from(i) * std::f64::consts::PI / 8.0);
+            [at[0] + radius * cos, at[1] + radius * sin]
+        })
+        .collect();
+    placer.add_line(&ring, 2.0, 1.0);
+}
+
+/// How a named body is painted.
+fn filled(look: Look) -> String {
+    match look {
+        Look::Plate => format!(r#"{} stroke-width="1.4" stroke-linejoin="round""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)),
+        Look::Moving => format!(r#"{} stroke-width="2" stroke-linejoin="round""#, Paint::fill_and_stroke(Paint::Paper, Paint::Main)),
+        Look::Bar => format!(r#"{} stroke-width="0.8""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)),
+        Look::Rail | Look::Axis | Look::Track | Look::Wire | Look::Comb | Look::Limit => format!(r#"fill="none" {}"#, stroked(look)),
+    }
+}
+
+/// Paint, width and dashes of a named line.
+fn line_of(look: Look) -> (Paint, f64, &'static str) {
+    match look {
+        Look::Plate | Look::Bar => (Paint::Ink, 1.4, ""),
+        Look::Moving => (Paint::Main, 2.0, ""),
+        Look::Rail => (Paint::Muted, 1.4, ""),
+        Look::Axis => (Paint::Muted, 1.0, "14 4 2 4"),
+        Look::Track => (Paint::Third, 1.3, "7 3.5"),
+        Look::Wire => (Paint::Second, 1.5, ""),
+        Look::Comb => (Paint::Main, 1.0, ""),
+        Look::Limit => (Paint::Limit, 1.2, "9 3"),
+    }
+}
+
+fn stroked(look: Look) -> String {
+    let (paint, width, dash) = line_of(look);
+    let (space, dash) = (if dash.is_empty() { "" } else { " " }, legend::dashed(dash));
+    format!(r#"{} stroke-width="{width}"{space}{dash}"#, paint.attributes("stroke"))
+}
+
 /// Stroke of what is only outlined.
 fn outline(role: Role) -> String {
+    if let Role::Named(look, _) = role {
+        return stroked(look);
+    }
     let (paint, width, dash) = match role {
         Role::Undeformed => (Paint::Reference, 1.4, "5 3.5"),
         Role::UndeformedCopy => (Paint::Reference, 1.0, "2.5 3.5"),
         Role::Construction => (Paint::Muted, 1.0, "14 4 2 4"),
         Role::Envelope => (Paint::Limit, 1.2, "9 3"),
         Role::Plane | Role::PlaneCopy => (Paint::Ink, 1.0, ""),
-        Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy => (Paint::Ink, 1.4, ""),
+        Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy | Role::Named(..) => (Paint::Ink, 1.4, ""),
     };
     format!(r#"{} stroke-width="{width}" {}"#, paint.attributes("stroke"), legend::dashed(dash))
 }
@@ -201,7 +314,7 @@ fn plain(canvas: &mut Canvas, at: &[[f64; 2]], width: f64, role: Role) {
             canvas.polyline(at, "");
             canvas.close();
         }
-        Role::Rigid | Role::RigidCopy => {
+        Role::Rigid | Role::RigidCopy | Role::Named(Look::Bar, _) => {
             let opacity = if role == Role::RigidCopy { r#" opacity="0.5""# } else { "" };
             for (paint, width) in [(Paint::Ink, width + 1.6), (Paint::Body, width)] {
                 canvas.open_stroke(paint, width, &format!(r#"stroke-linejoin="round"{opacity}"#));
@@ -300,9 +413,9 @@ fn flush(canvas: &mut Canvas, run: &[[f64; 2]], level: Option<u8>) {
     }
 }
 
-/// Texts, when everything that they must not cover is known.
-fn labels(canvas: &mut Canvas, placer: &mut Placer, scene: &Scene, view: &View) {
-    for item in &scene.items {
+fn labels(canvas: &mut Canvas, placer: &mut Placer, items: &[Item], view: &View) -> Vec<Rect> {
+    let mut taken = Vec::new();
+    for item in items {
         let (at, text, style) = match item {
             Item::Arrow { from, to, label } => {
                 // Nearer to the tail, which is the free end of a force that pushes.
@@ -325,8 +438,10 @@ fn labels(canvas: &mut Canvas, placer: &mut Placer, scene: &Scene, view: &View) 
                 canvas.segments(&[leader], &format!(r#"fill="none" {} stroke-width="1""#, style.paint.attributes("stroke")));
             }
             canvas.text_in(&text, &placed.rect, style);
+            taken.push(placed.rect);
         }
     }
+    taken
 }
 
 /// A bar of round length; returns where it ends.
@@ -403,20 +518,18 @@ fn bar_ticks(canvas: &mut Canvas, max: f64, at: &dyn Fn(f64) -> f64, place: [f64
 }
 
 /// What the line styles mean, for those that occur.
-fn entries(scene: &Scene) -> Vec<Entry> {
-    let count = |role: Role| {
-        scene.items.iter().filter(|i| matches!(i, Item::Line { role: r, .. } | Item::Body { role: r, .. } if *r == role)).count()
-    };
-    let coloured = |role: Role| {
-        scene.scale.is_some() && scene.items.iter().any(|i| matches!(i, Item::Line { role: r, values: Some(_), .. } if *r == role))
-    };
+pub(super) fn entries(items: &[Item], scene: &Scene) -> Vec<Entry> {
+    let count =
+        |role: Role| items.iter().filter(|i| matches!(i, Item::Line { role: r, .. } | Item::Body { role: r, .. } if *r == role)).count();
+    let coloured =
+        |role: Role| scene.scale.is_some() && items.iter().any(|i| matches!(i, Item::Line { role: r, values: Some(_), .. } if *r == role));
     let line = |paint, width, dash| Swatch::Line { paint, width, dash, squares: false };
     let loaded = |role, paint, faded| if coloured(role) { Swatch::Values { faded } } else { line(paint, 5.0, "") };
     let construction = if count(Role::Construction) == 1 { "mirror line" } else { "construction line" };
     let is_rigid = |i: &Item| {
         matches!(i, Item::Line { role: Role::Rigid | Role::RigidCopy, .. } | Item::Body { role: Role::Deformed | Role::DeformedCopy, .. })
     };
-    let rigid = scene.items.iter().any(is_rigid).then(|| Entry { swatch: Swatch::Body, text: "rigid".to_owned() });
+    let rigid = items.iter().any(is_rigid).then(|| Entry { swatch: Swatch::Body, text: "rigid".to_owned() });
     let [made, loaded_word] = scene.words;
     let lines = [
         (Role::Undeformed, line(Paint::Reference, 1.4, "5 3.5"), made.to_owned()),
@@ -427,7 +540,33 @@ fn entries(scene: &Scene) -> Vec<Entry> {
         (Role::Envelope, line(Paint::Limit, 1.2, "9 3"), "envelope".to_owned()),
     ];
     let lines = lines.into_iter().filter(|(role, ..)| count(*role) > 0).map(|(_, swatch, text)| Entry { swatch, text });
-    let hinge = scene.items.iter().any(|i| matches!(i, Item::Hinge { .. }));
+    let hinge = items.iter().any(|i| matches!(i, Item::Hinge { .. }));
     let hinge = hinge.then(|| Entry { swatch: Swatch::Point, text: "hinge".to_owned() });
-    lines.chain(rigid).chain(hinge).collect()
+    named(items).into_iter().chain(lines).chain(rigid).chain(hinge).collect()
+}
+
+/// Things with words of their own, in the order in which they are drawn.
+fn named(items: &[Item]) -> Vec<Entry> {
+    let mut seen = Vec::new();
+    for item in items {
+        let (Item::Line { role, .. } | Item::Body { role, .. } | Item::Disc { role, .. }) = item else { continue };
+        if let Role::Named(look, word) = role
+            && !word.is_empty()
+            && !seen.contains(&(*look, *word))
+        {
+            seen.push((*look, *word));
+        }
+    }
+    let swatch = |look: Look| {
+        let (paint, width, dash) = line_of(look);
+        match look {
+            Look::Plate => Swatch::Plate,
+            Look::Bar => Swatch::Body,
+            Look::Moving => Swatch::Moving,
+            Look::Rail | Look::Axis | Look::Track | Look::Wire | Look::Comb | Look::Limit => {
+                Swatch::Line { paint, width, dash, squares: false }
+            }
+        }
+    };
+    seen.into_iter().map(|(look, word)| Entry { swatch: swatch(look), text: word.to_owned() }).collect()
 }
