@@ -98,7 +98,7 @@ pub(crate) struct Beginnings {
     pub(crate) starts: Option<u32>,
     /// Their seed; without it that of the file.
     pub(crate) seed: Option<u32>,
-    /// Starts after those, as [`Settings::more_starts`].
+    /// Starts beside those, as [`Settings::more_starts`].
     pub(crate) more: Vec<Vec<f64>>,
     /// Whether they are judged as they are, without a step.
     pub(crate) as_they_are: bool,
@@ -384,12 +384,13 @@ impl Loaded {
         go_on: &(dyn Fn(&Progress) -> bool + Sync),
         stopped: &AtomicBool,
     ) -> Result<(Candidate, Robustness), Refused> {
-        let asked = found.reserve.clone();
+        let mut asked = found.reserve.clone();
         let choices = Choices { variant: self.project.choices.variant.clone(), set: Vec::new() };
         let project = |text: &str| Self::from_file(&Changed { files, path: target, text }, target, &choices);
         let (mut rounds, mut best, mut lacking) = (0, found.clone(), f64::INFINITY);
         loop {
-            let Some(reserve) = project(&found.text)?.reserve(task, &found.run, robust, &asked)? else { break };
+            let Some(mut reserve) = project(&found.text)?.reserve(task, &found.run, robust, &asked)? else { break };
+            robust::raise((&mut asked, &mut reserve), task, &found.run.x, &found.report.outcome);
             rounds += 1;
             let lacks = if found.run.feasible(NEARLY_KEPT) { reserve.lacking(&found.reserve, task) } else { f64::INFINITY };
             // Of those that keep what their own scatter takes, the best; else the one that lacks least of it.
@@ -521,3 +522,6 @@ pub(crate) fn way(from: &Path, to: &Path) -> Option<String> {
     let parts: Vec<_> = way.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
     if parts.is_empty() { None } else { Some(parts.join("/")) }
 }
+
+#[cfg(test)]
+mod tests;

@@ -48,3 +48,20 @@ fn the_best_basin_is_the_one_that_is_written() {
     assert!(solved.outcome.requirements_met());
     assert_eq!(solved.outcome.metric("flat_ratio").expect("analysed").value.to_bits(), reached.to_bits());
 }
+
+/// Half of the eight starts begin where the other half has ended.
+#[test]
+fn any_number_of_threads_writes_the_same_file() {
+    let loaded = Loaded::from_text("one.toml", BEAM, &Choices::default()).map_err(|e| e.render(false)).expect("understood");
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let found = pool.install(|| loaded.optimise(&DiskFiles, Path::new("one.toml"), (Some(8), None), &|_| true));
+        let found = found.map_err(|e| e.render(false)).expect("posed");
+        let goals: Vec<u64> = found.search.runs.iter().map(|run| run.goal.to_bits()).collect();
+        (goals, found.text.expect("written"))
+    };
+    let one = with(1);
+    assert_eq!(one.0.len(), 8);
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(3));
+}

@@ -30,7 +30,7 @@ pub struct Settings {
     /// Number of starts: the first from the design, the others spread over the ranges by a scrambled Sobol sequence. With
     /// [`Self::more_starts`] it may be 0.
     pub starts: usize,
-    /// Starts after those, SI, each one value per variable; a value beyond its range starts at its end.
+    /// Starts beside those, SI, each one value per variable; a value beyond its range starts at its end.
     pub more_starts: Vec<Vec<f64>>,
     /// Seed of the starts after the first.
     pub seed: u64,
@@ -197,9 +197,7 @@ pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bo
         begins.then(|| run_steps(task, settings, (index, start, 0), &go_on))
     };
     let evaluator = task.evaluator.as_ref();
-    let mut starts = all_starts(evaluator, settings);
-    let around = if settings.starts >= FEWEST_TO_DIVIDE { settings.starts / 2 } else { 0 };
-    let later = starts.split_off(starts.len() - around);
+    let (starts, later) = all_starts(evaluator, settings);
     let first = starts.len();
     let mut runs: Vec<Option<Run>> = starts.into_par_iter().enumerate().map(run).collect();
     // All of the first have ended before any of the others begins, so that the number of threads changes nothing.
@@ -249,14 +247,16 @@ pub fn again(task: &Task, settings: &Settings, run: &Run, watch: &(dyn Fn(&Progr
     next
 }
 
-/// The starts of the settings, in order; the design itself if there are none.
-fn all_starts(evaluator: &dyn Evaluator, settings: &Settings) -> Vec<Vec<f64>> {
+/// The starts of the settings, the design itself if there are none: those to begin with, and those that may be moved near to what they find.
+fn all_starts(evaluator: &dyn Evaluator, settings: &Settings) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let variables = evaluator.variables();
     let more = settings.more_starts.iter().filter(|x| x.len() == variables.len());
-    let more = more.map(|x| x.iter().zip(variables).map(|(x, v)| x.max(v.lower).min(v.upper)).collect());
-    let own = if settings.starts == 0 { Vec::new() } else { starts(evaluator, settings) };
-    let all: Vec<Vec<f64>> = own.into_iter().chain(more).collect();
-    if all.is_empty() { starts(evaluator, settings) } else { all }
+    let mut more = more.map(|x| x.iter().zip(variables).map(|(x, v)| x.max(v.lower).min(v.upper)).collect()).peekable();
+    let mut own = if settings.starts == 0 && more.peek().is_some() { Vec::new() } else { starts(evaluator, settings) };
+    let around = if own.len() >= FEWEST_TO_DIVIDE { own.len() / 2 } else { 0 };
+    let later = own.split_off(own.len() - around);
+    own.extend(more);
+    (own, later)
 }
 
 /// The design itself, and points spread over the ranges that are finite.
@@ -392,3 +392,6 @@ impl Task {
         Some(Posing::new(self, self.steps.last()?, x, &Reserve::default())?.standing()?.0)
     }
 }
+
+#[cfg(test)]
+mod tests;

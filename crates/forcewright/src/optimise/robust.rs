@@ -9,11 +9,13 @@
 use forcewright_base::diagnostics::Diagnostics;
 use forcewright_contract::scatter::Scattering;
 use forcewright_contract::studies::{Optimise, Purpose};
+use forcewright_model::Outcome;
 use forcewright_study::evaluator::Evaluation;
 use forcewright_study::optimise::{Reserve, Run};
 use forcewright_study::sampling::{LinearModel, Yield, normal};
 use forcewright_study::task::Task;
 
+use super::TIGHTER;
 use crate::{Loaded, Refused, ToleranceChoices};
 
 /// The part of the designs that keep each limit, where the file does not say.
@@ -46,6 +48,33 @@ impl Robust {
             Self::Percentile(part) => off + normal::quantile(part) * model.sd(output),
             // Half of what each parameter moves it by over its tolerance, all at once.
             Self::WorstCase => off + model.contributions(output).iter().map(|c| c.half_range.abs()).sum::<f64>(),
+        }
+    }
+}
+
+/// Moves limits further inwards, of what is asked and so of what is reserved in all, where the full analysis of the design at `x` leaves less
+/// than the scatter takes because between two stations of the search a value comes nearer to its limit than at any of them: at each design
+/// by another distance.
+pub(super) fn raise((asked, reserve): (&mut Reserve, &mut Reserve), task: &Task, x: &[f64], outcome: &Outcome) {
+    let mut found = Evaluation::default();
+    if task.evaluator.evaluate(x, false, &mut found, &mut task.evaluator.workspace()).is_err() {
+        return;
+    }
+    asked.limits.resize(reserve.limits.len(), 0.0);
+    for limit in &task.limits {
+        let room = |value: f64| f64::min(value - limit.lower, limit.upper - value);
+        let metrics = limit.checks.iter().filter_map(|name| outcome.metric(name)).filter(|m| m.dimension.si_symbol() == limit.unit);
+        let left = metrics.map(|m| room(m.value)).fold(f64::INFINITY, f64::min);
+        let taken = |at: usize| reserve.limits[at] - asked.limits[at];
+        let spare = |at: usize| room(found.values[at]) - taken(at);
+        let tightest = limit.values.clone().reduce(|least, at| if spare(at) < spare(least) { at } else { least });
+        // What the stations leave may be less yet, but that is for the search to mend.
+        let missing = tightest.map_or(0.0, |at| f64::min(taken(at), room(found.values[at]) - asked.limits[at]) - left);
+        // What is at its limit exactly is held there, as a clamp on a wall: the stations do not hide it.
+        if missing > 0.0 && left.abs() > 0.0 {
+            for reserve in [&mut *asked, &mut *reserve] {
+                reserve.limits[limit.values.clone()].iter_mut().for_each(|r| *r += TIGHTER * missing);
+            }
         }
     }
 }

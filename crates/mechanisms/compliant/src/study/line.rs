@@ -374,6 +374,7 @@ mod tests {
         let Nearest { at, crossed } = closest([&along, &across], [[0.0, 1.0], [0.125, 1.0]]);
         assert!(crossed && at.map(f64::to_bits) == [v, u].map(f64::to_bits), "{at:?}");
     }
+
     #[test]
     fn crossings_next_to_a_joint_are_seen() {
         // Lines that only meet in a joint do not cross.
