@@ -62,6 +62,22 @@ const GENERATED: &[Generated] = &[
         source: Source::Printed(&["reproduce", "lan2010", "--format", "markdown"]),
         region: Region::Between("validation"),
     },
+    Generated { file: "docs/reference/cam.schema.json", source: Source::Printed(&["schema", "cam"]), region: Region::Whole },
+    Generated {
+        file: "docs/reference/cam-parameters.md",
+        source: Source::Printed(&["schema", "cam", "--format", "markdown"]),
+        region: Region::Remarked,
+    },
+    Generated {
+        file: "crates/mechanisms/cam/README.md",
+        source: Source::Printed(&["reproduce", "sanchez2022", "--format", "markdown"]),
+        region: Region::Between("validation"),
+    },
+    Generated {
+        file: "docs/images/sanchez-2-springs.svg",
+        source: Source::Written(&["solve", "examples/cam/sanchez-2-springs.toml"], "mechanism.svg"),
+        region: Region::Whole,
+    },
     Generated {
         file: "docs/images/lan-table3.svg",
         source: Source::Written(&["solve", "examples/compliant/lan-table3.toml"], "mechanism.svg"),

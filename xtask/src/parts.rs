@@ -49,7 +49,7 @@ pub(crate) fn validate(workspace: &Workspace) -> ExitCode {
     code
 }
 
-/// Force curves of beams against those of finite elements, where CalculiX is installed.
+/// Force curves of beams against those of finite elements, where `CalculiX` is installed.
 fn finite_elements(workspace: &Workspace, steps: &mut Steps) {
     let (Some(binary), Ok(metadata)) = (built(workspace, None, steps), metadata::read(workspace)) else { return };
     let folder = metadata.target.join("xtask");
@@ -62,7 +62,7 @@ fn finite_elements(workspace: &Workspace, steps: &mut Steps) {
     });
     let mut command = Command::new(python_name());
     command.current_dir(&workspace.root).arg("xtask/python/finite_elements.py");
-    run_script(&mut command, &folder.join("finite-elements.json"), &job, "finite elements", Duration::from_mins(60), steps);
+    run_script(&mut command, &folder.join("finite-elements.json"), &job, "finite elements", Duration::from_hours(1), steps);
 }
 
 /// Writes the samples. Gives the folder of the tasks, and that of the samples in it.

@@ -258,7 +258,7 @@ fn random_networks_against_walking() {
     for trial in 0..6 {
         let Ok(network) = random_network(&mut random, 3.0, 1.5) else { continue };
         let settings = common::elastica();
-        let Ok(path) = forcewright_beam::trace(&network, &[0.0, 8e-3], &settings, &mut |_| true) else { continue };
+        let Ok(path) = trace(&network, &[0.0, 8e-3], &settings, &mut |_| true) else { continue };
         for point in &path.points {
             let wanted = by_walking(&network, point);
             let found = clearance(&network, Some(point), &[]).map_or(f64::INFINITY, |c| c.distance_m);

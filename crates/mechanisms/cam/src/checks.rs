@@ -1,5 +1,7 @@
 //! Requirements and rules against what was found.
 
+use std::fmt::Write as _;
+
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::judge::Comparison;
 use forcewright_elements::hertz::first_yield_pressure_pa;
@@ -187,7 +189,6 @@ impl Context<'_> {
 
     /// CAM003: a roller larger than the path allows cuts the start of the cam away.
     fn undercut(&self) -> Option<Check> {
-        let path = &self.behaviour.mechanism.paths[0];
         let radius = self.measured.get("path_curvature_radius_min")?;
         let base =
             self.base("CAM003", "undercut", "Undercut: roller radius against the path's radius of curvature", "path_curvature_radius_min");
@@ -198,11 +199,10 @@ impl Context<'_> {
             "below a travel of {} the roller rides on a corner of the cam and the force is not the one wanted: ",
             self.travel(lost)
         );
-        fix.push_str(&format!("a roller diameter of at most {diameter} removes the undercut"));
+        let _ = write!(fix, "a roller diameter of at most {diameter} removes the undercut");
         if let Some(length) = self.preloaded_start() {
-            fix.push_str(&format!(", and so do springs that are {} long at the start (`for_start_length`)", format_si(length, unit, 4)));
+            let _ = write!(fix, ", and so do springs that are {} long at the start (`for_start_length`)", format_si(length, unit, 4));
         }
-        let _ = path;
         let comparison = Comparison {
             required: false,
             value: Some(self.design.cut_roller_m),

@@ -117,7 +117,8 @@ impl Cut {
         let mut cut = Self { purpose, range_m: [0.0; 2], rise_m: [0.0; SIDES], table: None };
         let nowhere = CutError::SpringsGiveNoForce { travel_m: 0.0 };
         let sense = cut.purpose.springs.sense();
-        if !(sense * cut.purpose.springs.tension_n(cut.purpose.start_length_m)[0] >= -1e-9) {
+        let force = sense * cut.purpose.springs.tension_n(cut.purpose.start_length_m)[0];
+        if force < -1e-9 || force.is_nan() {
             return Err(nowhere);
         }
         if cut.purpose.friction < 0.0 {
@@ -277,7 +278,7 @@ impl Cut {
             gear(0).min(gear(1))
         };
         let mut most = 1e-3 * self.purpose.start_length_m;
-        while !(least(most) > 0.0) {
+        while least(most).is_nan() || least(most) <= 0.0 {
             most *= 2.0;
             if most > self.purpose.start_length_m {
                 return None;
@@ -318,7 +319,7 @@ impl Cut {
             if !fits || rows.len() > 8 * STEPS {
                 return Err(CutError::BraceTooShort { travel_m: state[0] });
             }
-            if !(moved > state[0]) {
+            if moved <= state[0] || moved.is_nan() {
                 return Err(CutError::Locks { travel_m: state[0] });
             }
             (at, state) = (reached, next);

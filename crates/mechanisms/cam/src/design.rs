@@ -192,6 +192,7 @@ impl Built {
     }
 }
 
+#[expect(clippy::ref_option, reason = "a slot as it stands in the description")]
 pub(crate) fn si(slot: &Slot<Quantity>) -> Option<f64> {
     slot.as_ref().map(|l| l.value.si)
 }
@@ -318,6 +319,7 @@ fn random_of(spec: &Spec) -> Option<RandomProfile> {
 }
 
 /// Both keys say the same thing.
+#[expect(clippy::ref_option, reason = "a slot as it stands in the description")]
 fn exclude<A, B>(first: &Slot<A>, second: &Slot<B>, names: [&str; 2], diagnostics: &mut Diagnostics) {
     if let (Some(first), Some(second)) = (first, second) {
         diagnostics.push(

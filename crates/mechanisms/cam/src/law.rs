@@ -101,6 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "exact in binary")]
     fn work_and_place_are_inverse() {
         let law = ForceLaw::through(&[[0.0, 40.0], [0.1, 60.0], [0.24, 20.0]]).expect("rising, above zero");
         assert!((law.work_j(0.1) - 5.0).abs() < 1e-15 && (law.work_j(0.24) - 10.6).abs() < 1e-14);

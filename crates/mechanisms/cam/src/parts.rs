@@ -110,24 +110,20 @@ fn deviation(arcs: &[(Vector, Segment)], near: &mut usize, place: &Oriented, nor
         *near += 1;
     }
     let (from, segment) = &arcs[*near];
-    match segment {
-        Segment::Arc { centre_m, to_m, .. } => {
-            let radius = maths::hypot(to_m[0] - centre_m[0], to_m[1] - centre_m[1]);
-            // Where the line along the normal meets the circle: e² + 2e(d·n) + |d|² = ϱ², the root near zero.
-            let d = [place.point_m[0] - centre_m[0], place.point_m[1] - centre_m[1]];
-            let b = d[0] * normal[0] + d[1] * normal[1];
-            let c = d[0] * d[0] + d[1] * d[1] - radius * radius;
-            let root = (b * b - c).max(0.0).sqrt();
-            -c / (b + root.copysign(b))
-        }
-        _ => {
-            let end = segment.end_m();
-            let along = [end[0] - from[0], end[1] - from[1]];
-            let across = [-along[1], along[0]];
-            let d = [from[0] - place.point_m[0], from[1] - place.point_m[1]];
-            (d[0] * across[0] + d[1] * across[1]) / (normal[0] * across[0] + normal[1] * across[1])
-        }
+    if let Segment::Arc { centre_m, to_m, .. } = segment {
+        let radius = maths::hypot(to_m[0] - centre_m[0], to_m[1] - centre_m[1]);
+        // Where the line along the normal meets the circle: e² + 2e(d·n) + |d|² = ϱ², the root near zero.
+        let d = [place.point_m[0] - centre_m[0], place.point_m[1] - centre_m[1]];
+        let b = d[0] * normal[0] + d[1] * normal[1];
+        let c = d[0] * d[0] + d[1] * d[1] - radius * radius;
+        let root = (b * b - c).max(0.0).sqrt();
+        return -c / (b + root.copysign(b));
     }
+    let end = segment.end_m();
+    let along = [end[0] - from[0], end[1] - from[1]];
+    let across = [-along[1], along[0]];
+    let d = [from[0] - place.point_m[0], from[1] - place.point_m[1]];
+    (d[0] * across[0] + d[1] * across[1]) / (normal[0] * across[0] + normal[1] * across[1])
 }
 
 /// What drawing the profile with arcs changes of the force, relative to it: the largest over the profile.

@@ -99,6 +99,7 @@ pub(crate) struct Design {
 
 /// What the cam is cut for.
 #[derive(Debug, Default)]
+#[expect(clippy::struct_field_names, reason = "they are the keys of the project file")]
 pub(crate) struct Profile {
     pub for_force: Slot<Quantity>,
     pub for_profile: Slot<Vec<Located<[Quantity; 2]>>>,

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use forcewright_base::maths::{hypot, sin_cos};
 use forcewright_cam::{
     Bank, Bodies, Cut, CutSide, Drive, Flaws, ForceLaw, Law, Mechanism, Motion, NormalError, Purpose, Sense, SidePath, Spring, SpringLaw,
     SpringMass,
@@ -53,6 +54,7 @@ fn paper_cut(friction: f64) -> Arc<Cut> {
 const BODIES: Bodies =
     Bodies { slider_kg: 0.068, brace_kg: 0.077, brace_kg_m2: 2.57e-4, roller_kg: 0.38, roller_kg_m2: 4.61e-6, springs: SpringMass::Bar };
 
+#[expect(clippy::needless_pass_by_value, reason = "the calls read better")]
 fn mechanism(cut: &Arc<Cut>, springs: Bank, friction: f64, flaws: [Flaws; 2]) -> Mechanism {
     Mechanism {
         paths: [0, 1].map(|side| SidePath::new(Arc::clone(cut), side, 0.016, &flaws[side])),
@@ -125,7 +127,7 @@ fn the_paper_s_cam_is_undercut() {
     }
     let pose = mechanism(&cut, bank(1365.0, 0.136), 0.0, [Flaws::default(), Flaws::default()]).pose([0.0, 0.0]).expect("on the corner");
     let at = pose.places[0].at;
-    let distance = ((at[0] - corner.at[0]).powi(2) + (at[1] - corner.at[1]).powi(2)).sqrt();
+    let distance = hypot(at[0] - corner.at[0], at[1] - corner.at[1]);
     close(distance, 0.016, 1e-15, "roller on its corner");
 }
 
@@ -268,7 +270,8 @@ struct Wave;
 impl NormalError for Wave {
     fn at(&self, arc_m: f64) -> [f64; 3] {
         let (k, a) = (400.0, 2e-5);
-        [a * (k * arc_m).sin(), a * k * (k * arc_m).cos(), -a * k * k * (k * arc_m).sin()]
+        let (sin, cos) = sin_cos(k * arc_m);
+        [a * sin, a * k * cos, -a * k * k * sin]
     }
 }
 
@@ -280,7 +283,8 @@ fn profile_errors_follow_from_energy_and_lagrange_s_equation() {
     let pose = |s: f64| m.pose([s, 0.0]).expect("assembles");
     for s in [0.02, 0.07, 0.15] {
         let h = 2e-6;
-        let energy = |s: f64| 0.5 * 1380.0 * (m.instant(&Drive::rest(s), Sense::Frictionless).expect("assembles").spring_m - 0.136).powi(2);
+        let energy =
+            |s: f64| bank(1380.0, 0.136).energy_j(0.136, m.instant(&Drive::rest(s), Sense::Frictionless).expect("assembles").spring_m);
         let slope = (energy(s + h) - energy(s - h)) / (2.0 * h);
         close(rest_force(&m, s, Sense::Frictionless) / slope, 1.0, 2e-7, "dE/ds");
         // F = V′ + M s̈ + M′ ṡ²/2: the part with the speed is that of the acceleration's mass, differentiated.
@@ -303,8 +307,8 @@ fn profile_errors_follow_from_energy_and_lagrange_s_equation() {
             let d = |p: [f64; 2], q: [f64; 2]| [(q[0] - p[0]) / 2e-6, (q[1] - p[1]) / 2e-6];
             let roller = d(a.places[side].at, b.places[side].at);
             let joint = d(a.joints[side], b.joints[side]);
-            let middle = [(roller[0] + joint[0]) / 2.0, (roller[1] + joint[1]) / 2.0];
-            let spin = ((roller[0] - joint[0]).powi(2) + (roller[1] - joint[1]).powi(2)).sqrt() / L;
+            let middle = [f64::midpoint(roller[0], joint[0]), f64::midpoint(roller[1], joint[1])];
+            let spin = hypot(roller[0] - joint[0], roller[1] - joint[1]) / L;
             let size = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
             kinetic += 0.5 * (BODIES.roller_kg + BODIES.roller_kg_m2 / (0.016 * 0.016)) * size(roller);
             kinetic += 0.5 * (BODIES.brace_kg * size(middle) + BODIES.brace_kg_m2 * spin * spin);

@@ -67,6 +67,7 @@ fn found(starts: usize, more_starts: Vec<Vec<f64>>) -> Search {
 
 /// Each limit and the bands are measured by the largest distance of their own.
 #[test]
+#[expect(clippy::float_cmp, reason = "quarters and halves are exact")]
 fn a_reserve_lacks_the_largest_part_of_any_limit_or_band() {
     let task = task();
     let reserve = |limits: [f64; 3], bands: [f64; 2]| Reserve { margin: 0.0, limits: limits.to_vec(), bands: bands.to_vec() };

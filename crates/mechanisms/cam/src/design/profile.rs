@@ -24,18 +24,17 @@ pub(super) fn purpose_of(spec: &Spec, extension: bool, diagnostics: &mut Diagnos
     let place = place_of(profile);
     let law = wanted(spec, place, diagnostics);
     exclude(&profile.for_rate, &profile.for_curve, ["for_rate", "for_curve"], diagnostics);
-    let spring = match &profile.for_curve {
-        Some(curve) => table_of(curve, diagnostics).map(SpringLaw::Table),
-        None => {
-            let example = "give `for_rate = \"1.38 N/mm\"` and `for_rest_length = \"136 mm\"`";
-            if profile.for_rate.is_none() {
-                diagnostics.push(missing(place, "`for_rate`", example));
-            }
-            if profile.for_rest_length.is_none() {
-                diagnostics.push(missing(place, "`for_rest_length`", example));
-            }
-            si(&profile.for_rate).zip(si(&profile.for_rest_length)).map(|(rate_n_per_m, rest_m)| SpringLaw::Linear { rate_n_per_m, rest_m })
+    let spring = if let Some(curve) = &profile.for_curve {
+        table_of(curve, diagnostics).map(SpringLaw::Table)
+    } else {
+        let example = "give `for_rate = \"1.38 N/mm\"` and `for_rest_length = \"136 mm\"`";
+        if profile.for_rate.is_none() {
+            diagnostics.push(missing(place, "`for_rate`", example));
         }
+        if profile.for_rest_length.is_none() {
+            diagnostics.push(missing(place, "`for_rest_length`", example));
+        }
+        si(&profile.for_rate).zip(si(&profile.for_rest_length)).map(|(rate_n_per_m, rest_m)| SpringLaw::Linear { rate_n_per_m, rest_m })
     };
     let start = si(&profile.for_start_length).or(si(&profile.for_rest_length));
     if let (Some(_), None) = (&profile.for_curve, start) {
@@ -109,6 +108,7 @@ pub(super) fn measured_of(spec: &Spec, cut: &Cut, roller_m: f64, diagnostics: &m
 }
 
 /// A force over the travel, typed or from a file; `None` without one or after an error.
+#[expect(clippy::ref_option, reason = "a slot as it stands in the description")]
 pub(super) fn law_of(typed: &Slot<Vec<Located<[Quantity; 2]>>>, file: &Slot<DataFile>, diagnostics: &mut Diagnostics) -> Option<ForceLaw> {
     let points: Vec<([f64; 2], Span)> = if let Some(typed) = typed {
         typed.value.iter().map(|p| (p.value.each_ref().map(|q| q.si), p.span)).collect()

@@ -155,8 +155,12 @@ impl Knobs {
             }
             Knob::RollingArm => built.arm_m = x,
             Knob::RollingFriction => built.arm_m = x * built.roller_m,
-            Knob::Rate(index) => set_rate(built.springs.get_mut(index), x),
-            Knob::RateOfAll => built.springs.iter_mut().for_each(|s| set_rate(Some(s), x)),
+            Knob::Rate(index) => {
+                if let Some(spring) = built.springs.get_mut(index) {
+                    set_rate(spring, x);
+                }
+            }
+            Knob::RateOfAll => built.springs.iter_mut().for_each(|s| set_rate(s, x)),
             Knob::RestLength => {
                 for spring in &mut built.springs {
                     if let SpringLaw::Linear { rest_m, .. } = &mut spring.law {
@@ -199,8 +203,8 @@ fn which(right: bool, left: bool) -> usize {
     }
 }
 
-fn set_rate(spring: Option<&mut Spring>, rate: f64) {
-    if let Some(Spring { law: SpringLaw::Linear { rate_n_per_m, .. }, .. }) = spring {
+fn set_rate(spring: &mut Spring, rate: f64) {
+    if let SpringLaw::Linear { rate_n_per_m, .. } = &mut spring.law {
         *rate_n_per_m = rate;
     }
 }
