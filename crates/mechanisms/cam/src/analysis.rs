@@ -85,6 +85,9 @@ impl Behaviour {
         let mut evaluations = 0;
         let free = design.free_guide;
         let (stations, stopped) = scan(&mechanism, [0.0, stroke_m], over_stroke, free, &mut evaluations);
+        // Where the slider comes to rest above the start of the window, the window begins there.
+        let [from, to] = window_m;
+        let window_m = [stations.first().map_or(from, |s| s.travel_m.max(from)), to];
         let (window, cut_short) = scan(&mechanism, window_m, over_window, free, &mut evaluations);
         let run = |m: &motion::Motion| {
             // A free slider begins where it rests.
@@ -374,8 +377,7 @@ fn forces(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
         m.set("force_deviation", Behaviour::extent(window, off)[1]);
     }
     let s = &behaviour.stations;
-    let step = design.purpose.stroke_m / (s.len() - 1).max(1) as f64;
-    let work: f64 = s.windows(2).map(|p| 0.5 * step * (p[0].still.force_n + p[1].still.force_n)).sum();
+    let work: f64 = s.windows(2).map(|p| 0.5 * (p[1].travel_m - p[0].travel_m) * (p[0].still.force_n + p[1].still.force_n)).sum();
     m.set("energy", work);
     let weightless = Mechanism { gravity_m_per_s2: 0.0, ..behaviour.mechanism.clone() };
     let [without, _] = behaviour.moments(|s| {
@@ -405,7 +407,9 @@ fn contact(behaviour: &Behaviour, m: &mut Measured) {
     let [brace_min, brace_max] = all(&both(|s| s.brace_n));
     m.set("brace_tension_min", brace_min);
     m.set("brace_tension_max", brace_max);
-    m.set("friction_needed_max", all(&both(|s| (s.tangential_n / s.normal_n).abs()))[1]);
+    let needed = |i: &Instant| i.sides.iter().map(|s| (s.tangential_n / s.normal_n).abs()).fold(0.0, f64::max);
+    let in_motion = behaviour.motion.iter().flatten().map(|moment| needed(&moment.moving)).fold(0.0, f64::max);
+    m.set("friction_needed_max", all(&both(|s| (s.tangential_n / s.normal_n).abs()))[1].max(in_motion));
     m.set("guide_force_max", all(&|i: &Instant| [i.guide_n.abs(); 2])[1]);
     let [length_min, length_max] = all(&|i: &Instant| [i.spring_m; 2]);
     m.set("spring_length_min", length_min);

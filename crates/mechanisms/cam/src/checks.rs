@@ -111,7 +111,7 @@ impl Context<'_> {
         } else {
             let ([_, high], [low, _]) = (ratio(|s| s.up.force_n.max(s.down.force_n)), ratio(|s| s.up.force_n.min(s.down.force_n)));
             let (middle, half) = (f64::midpoint(high, low), (high - low) / (high + low));
-            if half <= *band {
+            if half <= *band && middle > 0.0 && self.design.built.gravity_m_per_s2 == 0.0 {
                 format!("springs of {} % of their rate bring the force into the middle of its band", format_number(100.0 / middle, 4))
             } else {
                 format!(
@@ -125,7 +125,7 @@ impl Context<'_> {
         Some(Comparison { limit: Some(*band), display: percent(), fix, basis: basis.to_owned(), ..base }.judge())
     }
 
-    /// CAM002: the stroke without undercut.
+    /// CAM002: the stroke that can be assembled, undercut or not.
     fn stroke(&self, requirements: &Requirements) -> Option<Check> {
         let wanted = requirements.stroke_m?;
         let start = self.behaviour.stations.first().map_or(0.0, |s| s.travel_m);

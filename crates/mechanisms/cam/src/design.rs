@@ -262,7 +262,7 @@ fn built_of(spec: &Spec, springs: Vec<Spring>, extension: bool, (roller_m, arm_m
     let mass = |slot: &Slot<Quantity>| si(slot).unwrap_or(0.0);
     let bodies = &design.bodies;
     Some(Built {
-        brace_m: [brace, si(&design.brace_length_left).unwrap_or(brace)],
+        brace_m: [brace; SIDES],
         roller_m,
         arm_m,
         thickness_m: si(&design.cam_thickness),
@@ -399,12 +399,12 @@ fn check_rollers(spec: &Spec, cut: &Cut, roller_m: f64, diagnostics: &mut Diagno
     let [from, to] = cut.range_m();
     let reach = |side: usize, at: f64| cut.at(side, at).x.value();
     let least = [from, to].into_iter().flat_map(|at| [reach(0, at), reach(1, at)]).fold(f64::INFINITY, f64::min);
-    if least < roller_m && spec.design.arrangement.as_ref().is_some_and(|a| a.value == "compression") {
+    if least < roller_m {
         let place = spec.design.roller_diameter.as_ref().map_or_else(Span::default, |r| r.span);
         diagnostics.push(
             Diagnostic::error("E0607", place, "the rollers run into each other")
-                .label("at the end of the stroke")
-                .help("choose longer springs, a shorter stroke or smaller rollers"),
+                .label("where they come closest to the axis")
+                .help("choose longer springs or smaller rollers, and with compression springs a shorter stroke"),
         );
     }
 }
@@ -499,6 +499,5 @@ fn fill(material: &mut spec::Material, diagnostics: &mut Diagnostics) -> Materia
 fn cut_sides(spec: &Spec) -> Option<[CutSide; SIDES]> {
     let brace = si(&spec.design.brace_length)?;
     let share = si(&spec.design.profile.share_right)?;
-    let left = si(&spec.design.brace_length_left).unwrap_or(brace);
-    Some([CutSide { brace_m: brace, share }, CutSide { brace_m: left, share: 1.0 - share }])
+    Some([CutSide { brace_m: brace, share }, CutSide { brace_m: brace, share: 1.0 - share }])
 }

@@ -160,6 +160,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "The force across the travel grows with the distance from the axis in the direction of that distance: a slider without a guide leaves the axis. Guides carry `guide_force_max`.",
     ),
     code(
+        "W0607",
+        "unequal shares make the springs slant",
+        "`design.profile.share_right` lets one side make more of the springs' deformation. The rollers then stand at different heights, and springs between their axles slant. The cam is cut as if they did not: the force differs from the one wanted, by a per cent at a share of 0.4. The analysis has the slanting springs.",
+    ),
+    code(
+        "W0606",
+        "the window reaches beyond what was measured",
+        "A measured profile is known where its points are. Outside, the deviation of the last point is kept, and the force is that of a cam that is shifted there: it says nothing about the cam that was made. Measure the whole profile, or choose a shorter `requirements.window`.",
+    ),
+    code(
         "W0605",
         "points that do not belong to the profile",
         "Measured points farther than 4.685 robust standard deviations from the design are taken as outliers: dust, burrs, slips of the probe. They do not count. The report lists how many, and how far the rest is from the design.",

@@ -334,11 +334,14 @@ impl Mechanism {
             Sense::Down => -m.rolls * self.friction(),
             Sense::Frictionless => 0.0,
         };
-        // N (n − μ t) + T b = needed.
-        let contact = sum(&[(1.0, m.normal), (-friction, m.along)]);
-        let over = 1.0 / cross(contact, m.brace);
-        let normal_n = cross(needed, m.brace) * over;
-        let brace_n = cross(contact, needed) * over;
+        // N (n − μ t) + T b = needed. Resistance takes from the motion also where the cam would have to pull, which a check names.
+        let solve = |friction: f64| {
+            let contact = sum(&[(1.0, m.normal), (-friction, m.along)]);
+            let over = 1.0 / cross(contact, m.brace);
+            (friction, cross(needed, m.brace) * over, cross(contact, needed) * over)
+        };
+        let pushing = solve(friction);
+        let (friction, normal_n, brace_n) = if pushing.1 < 0.0 && friction != 0.0 { solve(-friction) } else { pushing };
         let tangential_n = -friction * normal_n - rim;
         let on_joint = sum(&[(b.brace_kg, middle), (brace_n, m.brace), (1.0, across_brace)]);
         (SideForces { normal_n, tangential_n, brace_n }, on_joint)

@@ -63,7 +63,7 @@ pub const METRICS: &[MetricInfo] = &[
         "friction_needed_max",
         Dimension::Ratio,
         false,
-        "Largest tangential over normal force between roller and cam: rolling needs so much friction.",
+        "Largest tangential over normal force between roller and cam, at rest and in the motion: rolling needs so much friction.",
     ),
     metric("guide_force_max", Dimension::Force, false, "Largest force across the travel that the guide of the slider carries."),
     metric(

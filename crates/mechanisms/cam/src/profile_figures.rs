@@ -100,6 +100,26 @@ pub(crate) fn statement(design: &Design) -> Option<Statement> {
     })
 }
 
+/// A window that reaches beyond what was measured.
+pub(crate) fn uncovered(design: &Design, behaviour: &Behaviour) -> Option<Warning> {
+    let measured = design.built.measured.as_ref()?;
+    let [from, to] = behaviour.window_m;
+    let reach = measured.points.iter().filter(|points| !points.is_empty()).map(|points| [points[0][0], points[points.len() - 1][0]]);
+    let [first, last] = reach.fold([0.0, f64::INFINITY], |[a, b]: [f64; 2], [c, d]| [a.max(c), b.min(d)]);
+    let shown = |s: f64| format_si(s, &design.units.travel, 4);
+    // A millimetre is no more than the distance of points.
+    (from < first - 1e-3 || to > last + 1e-3).then(|| Warning {
+        code: "W0606",
+        message: format!(
+            "the profile was measured from a travel of {} to {}, the window goes from {} to {}: outside, the deviation of the last point is kept",
+            shown(first),
+            shown(last),
+            shown(from),
+            shown(to)
+        ),
+    })
+}
+
 /// Outliers, and a fit that did not come to rest.
 pub(crate) fn warning(design: &Design) -> Option<Warning> {
     let fit = &design.built.measured.as_ref()?.registration;

@@ -85,7 +85,6 @@ pub(crate) struct Environment {
 pub(crate) struct Design {
     pub arrangement: Slot<&'static str>,
     pub brace_length: Slot<Quantity>,
-    pub brace_length_left: Slot<Quantity>,
     pub roller_diameter: Slot<Quantity>,
     pub cam_thickness: Slot<Quantity>,
     pub stroke: Slot<Quantity>,
@@ -343,7 +342,6 @@ impl Describe for Design {
         v.choice(&Param::new("arrangement", "How the springs act.").default("tension"), ARRANGEMENTS, &mut self.arrangement);
         let brace = |key, doc| length(key, doc).within(SMALLEST_M, LARGEST_M);
         v.quantity(&brace("brace_length", "Length l of the braces, joint to axle.").required(), &mut self.brace_length);
-        v.quantity(&brace("brace_length_left", "Length of the left brace, where it is another."), &mut self.brace_length_left);
         v.quantity(
             &Param::new("roller_diameter", "Diameter of the rollers, 2r.").diameter().within(SMALLEST_M, 1.0).required(),
             &mut self.roller_diameter,
@@ -446,7 +444,7 @@ impl Describe for Parts {
     fn describe(&mut self, v: &mut dyn Visitor) {
         let size = |key, doc| length(key, doc).above(0.0, 1.0);
         let error = "Largest distance between the arcs that the cam is drawn with and its exact profile.";
-        v.quantity(&length("chord_error", error).within(1e-8, 1e-3).default("0.1 µm"), &mut self.chord_error);
+        v.quantity(&length("chord_error", error).within(1e-8, 1e-3).default("0.05 µm"), &mut self.chord_error);
         v.quantity(&size("base", "Height of the cam plate below the start of its profile; by default a roller diameter."), &mut self.base);
         v.quantity(&size("wall", "With compression springs: material behind the profile; by default a roller diameter."), &mut self.wall);
         v.quantity(

@@ -177,7 +177,22 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             ),
         });
     }
+    if design.purpose.sides[0] != design.purpose.sides[1] && !behaviour.window.is_empty() {
+        let off = |s: &crate::analysis::Station| {
+            let [rise, fall] = [0, 1].map(|side| s.pose.places[side].at[1]);
+            (rise - fall).abs()
+        };
+        let [_, most] = Behaviour::extent(&behaviour.window, off);
+        all.push(Warning {
+            code: "W0607",
+            message: format!(
+                "with unequal shares the axles stand at heights that differ by up to {}: the springs slant, which the cut of the cam does not know, and the force departs from the one wanted",
+                format_si(most, &design.units.length, 3)
+            ),
+        });
+    }
     all.extend(crate::profile_figures::warning(design));
+    all.extend(crate::profile_figures::uncovered(design, behaviour));
     if let (Some(friction), Some(needed)) = (design.friction, measured.get("friction_needed_max"))
         && needed > friction
     {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
-use forcewright_base::units::{Dimension, Quantity};
+use forcewright_base::units::{Dimension, Quantity, Unit};
 use forcewright_contract::data::{Column, DataFile, rows};
 use forcewright_contract::describe::{Located, Slot};
 
@@ -22,16 +22,18 @@ const MOST_ROWS: usize = 500;
 pub(super) fn purpose_of(spec: &Spec, extension: bool, diagnostics: &mut Diagnostics) -> Option<Purpose> {
     let profile = &spec.design.profile;
     let place = place_of(profile);
+    // A value that was refused has been reported: it is not missing as well.
+    let sound = !diagnostics.has_errors();
     let law = wanted(spec, place, diagnostics);
     exclude(&profile.for_rate, &profile.for_curve, ["for_rate", "for_curve"], diagnostics);
     let spring = if let Some(curve) = &profile.for_curve {
         table_of(curve, diagnostics).map(SpringLaw::Table)
     } else {
         let example = "give `for_rate = \"1.38 N/mm\"` and `for_rest_length = \"136 mm\"`";
-        if profile.for_rate.is_none() {
+        if profile.for_rate.is_none() && sound {
             diagnostics.push(missing(place, "`for_rate`", example));
         }
-        if profile.for_rest_length.is_none() {
+        if profile.for_rest_length.is_none() && sound {
             diagnostics.push(missing(place, "`for_rest_length`", example));
         }
         si(&profile.for_rate).zip(si(&profile.for_rest_length)).map(|(rate_n_per_m, rest_m)| SpringLaw::Linear { rate_n_per_m, rest_m })
@@ -118,6 +120,15 @@ pub(super) fn law_of(typed: &Slot<Vec<Located<[Quantity; 2]>>>, file: &Slot<Data
         found.iter().map(|cells| (cells.map(|c| c.si), cells[0].span)).collect()
     };
     let plain: Vec<[f64; 2]> = points.iter().map(|p| p.0).collect();
+    if let Some(([first, _], span)) = points.first().filter(|([first, _], _)| *first != 0.0) {
+        let shown = forcewright_base::units::format_si(*first, &Unit::parse("mm").unwrap_or_else(|_| Unit::si(Dimension::Length)), 4);
+        diagnostics.push(
+            Diagnostic::error("E0604", *span, format!("this profile begins at a travel of {shown}"))
+                .label("the first point")
+                .help("travel is counted from the start of the path: begin with a force at `0 mm`"),
+        );
+        return None;
+    }
     let error = match ForceLaw::through(&plain) {
         Ok(law) => return Some(law),
         Err(error) => error,

@@ -27,7 +27,9 @@ pub(super) fn mounted(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Vec<
         );
     }
     let place = place_of(springs);
-    if springs.curve.is_none() && springs.rest_length.is_none() && springs.present.is_some() {
+    // A value that was refused has been reported: it is not missing as well.
+    let sound = !diagnostics.has_errors();
+    if springs.curve.is_none() && springs.rest_length.is_none() && springs.present.is_some() && sound {
         diagnostics.push(missing(place, "`rest_length`", "give the length of the springs without force, `rest_length = \"136 mm\"`"));
     }
     let laws: Vec<SpringLaw> = if let Some(curve) = &springs.curve {
@@ -37,7 +39,7 @@ pub(super) fn mounted(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Vec<
             (Some(rates), _) => rates.value.iter().map(|q| q.si).collect(),
             (None, Some(rate)) => vec![rate.value.si; count as usize],
             (None, None) => {
-                if springs.present.is_some() {
+                if springs.present.is_some() && sound {
                     diagnostics.push(missing(
                         place,
                         "`rates`",

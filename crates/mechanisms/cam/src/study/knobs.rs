@@ -11,11 +11,7 @@ use crate::springs::{Bank, Spring, SpringLaw};
 /// What a number changes. In a search the cam is cut anew for the design that is tried; the scatter of making leaves it as it was cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Knob {
-    /// Both braces, or the right one where the left one has its own.
-    Brace {
-        left: bool,
-    },
-    LeftBrace,
+    Brace,
     RollerDiameter,
     RollingArm,
     RollingFriction,
@@ -66,7 +62,6 @@ struct FromFile {
     for_rest_m: f64,
     starts_at_rest: bool,
     down: bool,
-    left_brace: bool,
 }
 
 impl Knobs {
@@ -76,7 +71,7 @@ impl Knobs {
         let before = diagnostics.errors();
         let mut each = Vec::new();
         for free in free {
-            match knob(spec, &free.number.path, cuts) {
+            match knob(&free.number.path, cuts) {
                 Ok(knob) => each.push(knob),
                 Err(why) => diagnostics.push(
                     Diagnostic::error("E0313", free.number.span, format!("a study cannot change `{}`", free.number.path))
@@ -131,20 +126,10 @@ impl Knobs {
     fn turn(&self, knob: Knob, x: f64, design: &mut Design, file: &mut FromFile) {
         let (built, purpose) = (&mut design.built, &mut design.purpose);
         match knob {
-            Knob::Brace { left } => {
-                built.brace_m[0] = x;
-                if left {
-                    built.brace_m[1] = x;
-                }
+            Knob::Brace => {
+                built.brace_m = [x; 2];
                 if self.cuts {
-                    purpose.sides[0].brace_m = x;
-                    purpose.sides[1].brace_m = built.brace_m[1];
-                }
-            }
-            Knob::LeftBrace => {
-                built.brace_m[1] = x;
-                if self.cuts {
-                    purpose.sides[1].brace_m = x;
+                    purpose.sides.iter_mut().for_each(|side| side.brace_m = x);
                 }
             }
             Knob::RollerDiameter => {
@@ -223,20 +208,17 @@ impl FromFile {
             for_rest_m: or0(&profile.for_rest_length),
             starts_at_rest: profile.for_start_length.is_none(),
             down: profile.compensate.as_ref().is_some_and(|c| c.value == "down"),
-            left_brace: spec.design.brace_length_left.is_some(),
         }
     }
 }
 
 /// What a path means, or why a study cannot change it.
-fn knob(spec: &Spec, path: &str, cuts: bool) -> Result<Knob, &'static str> {
+fn knob(path: &str, cuts: bool) -> Result<Knob, &'static str> {
     if path.starts_with("design.profile.") && !cuts {
         return Err("the cam is cut once: what it is cut for does not scatter");
     }
-    let left_brace = FromFile::of(spec).left_brace;
     Ok(match path {
-        "design.brace_length" => Knob::Brace { left: !left_brace },
-        "design.brace_length_left" => Knob::LeftBrace,
+        "design.brace_length" => Knob::Brace,
         "design.roller_diameter" => Knob::RollerDiameter,
         "design.rolling_arm" => Knob::RollingArm,
         "design.rolling_friction" => Knob::RollingFriction,
