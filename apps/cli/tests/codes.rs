@@ -118,7 +118,36 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0508", "a warning of the analysis"),
     ("W0510", "a warning of the analysis"),
     ("W0511", "a warning of studies: tests of the family"),
+    ("E0602", "a cam cut for friction that locks: none is known that a file reaches"),
+    ("E0605", "a motion beyond the stroke: what motions need"),
+    ("E0608", "a curve of a spring"),
+    ("E0609", "a cam that cannot be drawn: none is known"),
+    ("E0610", "what motions need"),
+    ("E0611", "what motions need"),
+    ("E0612", "what motions need"),
+    ("E0630", "what a synthesis needs"),
+    ("E0631", "what a synthesis needs"),
+    ("E0632", "measured points: tests of the family"),
+    ("W0601", "a warning of the analysis"),
+    ("W0602", "a warning of the analysis"),
+    ("W0603", "a warning of the analysis"),
+    ("W0604", "a warning of the analysis"),
+    ("W0605", "a warning of the analysis"),
+    ("W0606", "a warning of the analysis"),
+    ("W0607", "a warning of the analysis"),
 ];
+
+/// Edits of the cam example and the code that each must bring.
+const CAM_EDITS: &[(&str, &str, &str)] = &[
+    ("E0601", "stroke = \"230 mm\"\nrolling_arm", "stroke = \"2 m\"\nrolling_arm"),
+    ("E0603", "for_start_length = \"143 mm\"", "for_start_length = \"120 mm\""),
+    ("E0604", "for_force = \"50 N\"", "for_profile = [[\"10 mm\", \"40 N\"], [\"200 mm\", \"50 N\"]]"),
+    ("E0606", "window = [\"5 mm\", \"230 mm\"]", "window = [\"5 mm\", \"500 mm\"]"),
+    ("E0607", "roller_diameter = \"32 mm ± 0.01 mm\"", "roller_diameter = \"150 mm\""),
+];
+
+/// The cam example.
+const CAM: &str = include_str!("../../../examples/cam/no-undercut.toml");
 
 fn codes_of(text: &str, choices: &Choices) -> Vec<&'static str> {
     match Loaded::from_text("a.toml", text, choices) {
@@ -146,6 +175,14 @@ fn every_code_is_met_and_every_code_met_is_explained() {
         // E0512: beams as thick as they are long.
         let text = if *code == "E0512" { text.replace("thickness = \"1 mm ± 0.02 mm\"", "thickness = \"16 mm\"") } else { text };
         let found = codes_of(&text, &Choices::default());
+        if !found.contains(code) {
+            wrong.push(format!("{code}: {to} brings {found:?}"));
+        }
+        met.extend(found);
+    }
+    for (code, from, to) in CAM_EDITS {
+        assert!(CAM.contains(from), "{from} is not in the example");
+        let found = codes_of(&CAM.replacen(from, to, 1), &Choices::default());
         if !found.contains(code) {
             wrong.push(format!("{code}: {to} brings {found:?}"));
         }
