@@ -37,7 +37,7 @@ const HARDER: f64 = 2.0;
 const NEARER: f64 = 0.7;
 const MOST_IN_VAIN: usize = 2;
 /// The least by which a limit moves, relative to its scale, and a band, relative to its level: beyond what a search leaves open.
-const LEAST_MOVE: f64 = 1e-5;
+const LEAST_MOVE: f64 = 3e-6;
 /// A requirement of the stretch in a band that is missed by more than this part of its scale is not the doing of its own limit but of the
 /// band, which was left between stations.
 const BEYOND: f64 = 0.01;
