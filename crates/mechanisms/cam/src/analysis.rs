@@ -17,8 +17,8 @@ use crate::release::{End, Release, Released, release};
 pub(crate) const STATIONS: usize = 480;
 /// Panels of the window, for means; extremes are taken at their ends and middles.
 const PANELS: usize = 400;
-/// How far above the start of the travel a released slider is stopped, relative to the stroke.
-const START_STOP: f64 = 1e-6;
+/// How far above the start of its travel a slider is taken where the start itself is singular, relative to the stroke.
+const JUST_ABOVE: f64 = 1e-6;
 
 /// Forces at a travel.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +35,13 @@ pub struct Station {
     pub down: Instant,
     /// Way of a free slider to the right: without friction, up, down, m.
     pub sideways_m: [f64; 3],
+}
+
+impl Station {
+    /// Whether its forces are numbers.
+    fn is_determined(&self) -> bool {
+        [&self.still, &self.up, &self.down].iter().all(|i| (i.force_n + i.guide_n).is_finite())
+    }
 }
 
 /// What a design does.
@@ -129,7 +136,7 @@ impl Behaviour {
 /// Lets the slider go. Its stops are the ends of the stroke; the one at the start lies where the rollers come to it, and a little above: on
 /// a cam without undercut the mass seen by the slider grows without limit towards s = 0.
 fn let_go(mechanism: &Mechanism, asked: &Release, stations: &[Station], stroke_m: f64) -> Released {
-    let near = stations.first().map_or(0.0, |s| s.travel_m).max(START_STOP * stroke_m);
+    let near = stations.first().map_or(0.0, |s| s.travel_m).max(JUST_ABOVE * stroke_m);
     release(mechanism, &Release { start_m: asked.start_m.max(near), stops_m: [near, stroke_m], ..*asked })
 }
 
@@ -145,7 +152,12 @@ fn scan(
     for i in 0..=intervals {
         let s = from + (to - from) * i as f64 / intervals as f64;
         let near = stations.last();
-        let found = if free { free_station(mechanism, s, near) } else { station(mechanism, s, near) };
+        let at = |s: f64| if free { free_station(mechanism, s, near) } else { station(mechanism, s, near) };
+        let found = match at(s) {
+            // Springs without tension on a path along which a brace carries nothing: 0/0, whose limit is the force just above.
+            Ok(station) if !station.is_determined() => at(s + JUST_ABOVE * (to - from)),
+            found => found,
+        };
         match found {
             Ok(station) => {
                 *evaluations += u64::from(station.pose.evaluations);
