@@ -334,12 +334,3 @@ fn scaling_and_symmetry() {
         close(here.sides[0].normal_n, there.sides[1].normal_n, 1e-12, "mirrored");
     }
 }
-
-/// At the very start nothing is tense, and the brace stands along the path's normal as friction tilts it: 0/0. Its limit is the force wanted.
-#[test]
-fn the_start_of_a_compensated_cam_has_its_limit() {
-    let found = behaviour(include_str!("../../../../examples/cam/compensated.toml"));
-    let first = &found.stations[0];
-    assert!((0.0..1e-6).contains(&first.travel_m), "{}", first.travel_m);
-    assert!((first.up.force_n - 50.0).abs() < 1e-6, "{}", first.up.force_n);
-}
