@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
-use forcewright_model::{Figure, NoPart, Outcome, ParameterRow, PartSet, Statement};
+use forcewright_model::{Citation, Figure, NoPart, Outcome, ParameterRow, PartSet, Statement, Status, StatusKind};
 
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -11,6 +11,7 @@ use forcewright_study::task::Task;
 use crate::describe::Describe;
 use crate::numbers::{Number, numbers_of};
 use crate::project::Project;
+use crate::reproduction::Reproduction;
 use crate::studies::{Free, Purpose, Studies};
 use crate::synthesis::{Skeleton, Synthesiser};
 use crate::{paths, read, schema};
@@ -83,41 +84,22 @@ pub struct Analysis {
     pub limits: Vec<Statement>,
 }
 
-/// A paper's numbers beside ours.
-#[derive(Clone, Copy)]
-pub struct Reproduction {
-    /// Key in the bibliography: `lan2010`.
-    pub key: &'static str,
-    /// The paper, in words.
-    pub title: &'static str,
-    /// Computes every row anew.
-    pub run: fn(Progress<'_>) -> Vec<ReproductionRow>,
-}
-
-/// One number of a paper.
-#[derive(Clone, Debug)]
-pub struct ReproductionRow {
-    /// The quantity, with its unit.
-    pub quantity: String,
-    /// Table, figure or equation of the paper.
-    pub place: String,
-    /// As printed; empty where the paper prints none.
-    pub paper: Option<f64>,
-    /// As computed in this run.
-    pub ours: f64,
-    /// Unit of both.
-    pub unit: String,
-    /// Largest difference that the printed digits, or the stated reason, explain: absolute, in the unit. A printed number without it
-    /// departs for a reason that is not known.
-    pub explained: Option<f64>,
-    /// Why they differ, or why the paper's number is not reached.
-    pub why: String,
-}
-
-impl ReproductionRow {
-    /// Whether the difference is no larger than what is explained.
-    pub fn agrees(&self) -> Option<bool> {
-        Some((self.ours - self.paper?).abs() <= self.explained?)
+impl Analysis {
+    /// One that could not begin: a status that says why, and what is known of the design without it.
+    pub fn refused<M: Mechanism>(title: &str, message: String, [model, limits]: [Vec<Statement>; 2], sources: Vec<Citation>) -> Self {
+        let outcome = Outcome {
+            mechanism: M::ID,
+            title: title.to_owned(),
+            status: Status { kind: StatusKind::NotConverged, message, advice: None },
+            error_estimate: None,
+            metrics: Vec::new(),
+            checks: Vec::new(),
+            curves: Vec::new(),
+            counters: Vec::new(),
+            sources,
+            warnings: Vec::new(),
+        };
+        Self { outcome, figures: Vec::new(), model, limits }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The contract between mechanism families and everything else. Layer 2: the project file (tree, merging, reading, schema) and the
 //! traits that a family implements.
 
+pub mod catalogue;
 pub mod codes;
 #[cfg(feature = "conformance")]
 pub mod conformance;
@@ -12,9 +13,11 @@ pub mod header;
 pub mod judge;
 pub mod metrics;
 pub mod numbers;
+pub mod objective;
 pub mod paths;
 pub mod project;
 pub mod read;
+pub mod reproduction;
 pub mod scatter;
 pub mod schema;
 pub mod studies;

@@ -2,6 +2,7 @@
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::units::{Dimension, Quantity, Unit};
+use forcewright_model::Metric;
 
 use crate::describe::{Describe, Located, Origin, Param, Section, Slot, Visitor};
 
@@ -27,6 +28,15 @@ pub const fn metric(name: &'static str, dimension: Dimension, key: bool, doc: &'
 pub trait Metrics: Default + std::fmt::Debug {
     /// The list.
     const ALL: &'static [MetricInfo];
+}
+
+/// The metrics that have a value, as outputs see them: `value` and `display` take the index into the list.
+pub fn results<M: Metrics>(value: impl Fn(usize) -> Option<f64>, display: impl Fn(usize) -> Unit) -> Vec<Metric> {
+    let one = |(index, info): (usize, &MetricInfo)| {
+        let MetricInfo { name, dimension, doc, key } = *info;
+        Some(Metric { name, value: value(index)?, dimension, display: display(index), doc, key })
+    };
+    M::ALL.iter().enumerate().filter_map(one).collect()
 }
 
 /// Bounds on the metrics of a family, in the order of its list: `[requirements.limits]`.
@@ -86,6 +96,13 @@ pub struct Limit {
     pub max: Option<f64>,
     /// The unit that was typed.
     pub unit: Unit,
+}
+
+impl Limit {
+    /// Name of the metric in its family's list.
+    pub fn name<M: Metrics>(&self) -> &'static str {
+        M::ALL[self.metric].name
+    }
 }
 
 impl<M: Metrics> Limits<M> {

@@ -44,7 +44,8 @@ pub use synthesise::{Designed, Stage, SynthesisProgress, SynthesisTask, Synthesi
 pub use tolerance::{NoTolerance, ToleranceChoices, Toleranced};
 
 use forcewright_base::diagnostics::Explanation;
-use forcewright_contract::family::{Entry, Family, Reproduction};
+use forcewright_contract::family::{Entry, Family};
+use forcewright_contract::reproduction::Reproduction;
 
 /// The version of this library.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

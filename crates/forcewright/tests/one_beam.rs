@@ -28,8 +28,8 @@ seed = 3
 "design.beams.*.bend" = { range = [-3, 3] }
 "#;
 
-/// A stiffness missed by far more than what bending gives, by next to nothing beside the largest, is kept by its own limit: once it was the
-/// band that was narrowed instead, which helped nothing, and a basin far behind was written.
+/// What is written is the best of the basins that the full analysis confirms. Once a stiffness missed between two stations narrowed the band,
+/// which helped nothing, and a basin far behind was written.
 #[test]
 fn the_best_basin_is_the_one_that_is_written() {
     let target = Path::new("one.toml");

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use clap::ArgMatches;
 use forcewright::base::units::format_number;
-use forcewright::contract::family::{Reproduction, ReproductionRow};
+use forcewright::contract::reproduction::{Finding, Reproduction, ReproductionRow};
 use serde_json::json;
 
 use crate::progress::Progress;
@@ -23,7 +23,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
             true
         });
         bar.done();
-        all_agree &= !rows.is_empty() && rows.iter().all(|r| r.agrees() != Some(false));
+        all_agree &= !rows.is_empty() && rows.iter().all(|r| r.finding() != Finding::Fails);
         match format {
             "markdown" => output::print(&markdown(&rows)),
             "json" => documents.push(document(reproduction, &rows)),
@@ -37,23 +37,41 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     if all_agree { exit::MET } else { exit::MISSED }
 }
 
-fn cells(row: &ReproductionRow) -> [String; 4] {
+/// Mark, the same in Markdown, and meaning of a finding.
+fn sign(finding: Finding) -> [&'static str; 3] {
+    match finding {
+        Finding::Reproduced => ["✓", "✅", "reproduced within its digits or the stated reason"],
+        Finding::Compatible => ["≈", "≈", "measured on a bench; ours lies within what that bench may differ"],
+        Finding::Met => ["=", "=", "met by a quantity that was chosen for it"],
+        Finding::Misprint => ["!", "❗", "error in print, see why"],
+        Finding::Departs => ["⚠", "⚠", "departs, see why"],
+        Finding::Fails => ["✗", "❌", "differs by more than is explained"],
+        Finding::NotPrinted => ["·", "🧪", "has no printed number"],
+    }
+}
+
+/// Findings in the order in which they are counted.
+const FINDINGS: [Finding; 7] =
+    [Finding::Reproduced, Finding::Compatible, Finding::Met, Finding::Misprint, Finding::Departs, Finding::Fails, Finding::NotPrinted];
+
+/// How many rows there are of each finding that occurs: mark, count, meaning.
+fn counts(rows: &[ReproductionRow]) -> Vec<(Finding, usize)> {
+    FINDINGS.map(|f| (f, rows.iter().filter(|r| r.finding() == f).count())).into_iter().filter(|(_, count)| *count > 0).collect()
+}
+
+/// Printed, ours, difference.
+fn cells(row: &ReproductionRow) -> [String; 3] {
     let paper = row.paper.map_or_else(|| "–".to_owned(), |p| format_number(p, 6));
     let difference = row.paper.map_or_else(|| "–".to_owned(), |p| format_number(row.ours - p, 2));
-    let mark = match row.agrees() {
-        Some(true) => "✓",
-        Some(false) => "✗",
-        None if row.paper.is_some() => "⚠",
-        None => "·",
-    };
-    [paper, format_number(row.ours, 6), difference, mark.to_owned()]
+    [paper, format_number(row.ours, 6), difference]
 }
 
 fn text(reproduction: &Reproduction, rows: &[ReproductionRow]) -> String {
     let mut table = vec![["", "quantity", "unit", "paper", "ours", "difference", "where"].map(str::to_owned).to_vec()];
     for row in rows {
-        let [paper, ours, difference, mark] = cells(row);
-        table.push(vec![mark, row.quantity.clone(), row.unit.clone(), paper, ours, difference, row.place.clone()]);
+        let [paper, ours, difference] = cells(row);
+        let [mark, ..] = sign(row.finding());
+        table.push(vec![mark.to_owned(), row.quantity.clone(), row.unit.clone(), paper, ours, difference, row.place.clone()]);
     }
     let mut out = format!("{}\n\n", reproduction.title);
     out.push_str(&columns(&table, &[Align::Left, Align::Left, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]));
@@ -61,30 +79,28 @@ fn text(reproduction: &Reproduction, rows: &[ReproductionRow]) -> String {
     for row in rows.iter().filter(|r| !r.why.is_empty()) {
         let _ = writeln!(out, "- {}: {}", row.quantity, row.why);
     }
-    let agree = rows.iter().filter(|r| r.agrees() == Some(true)).count();
-    let printed = rows.iter().filter(|r| r.paper.is_some()).count();
-    let _ = writeln!(
-        out,
-        "\n{agree} of {printed} printed numbers reproduced within what is explained; ⚠ departs, see why; · has no printed number"
-    );
+    out.push('\n');
+    for (finding, count) in counts(rows) {
+        let [mark, _, meaning] = sign(finding);
+        let _ = writeln!(out, "{mark} {count:>3}  {meaning}");
+    }
     out
 }
 
 fn markdown(rows: &[ReproductionRow]) -> String {
-    let mut out =
-        String::from("| quantity | source | paper | computed | difference | | why |\n| --- | --- | ---: | ---: | ---: | --- | --- |\n");
+    let mut out = String::new();
+    for (finding, count) in counts(rows) {
+        let [_, mark, meaning] = sign(finding);
+        let _ = writeln!(out, "- {mark} {count} × {meaning}");
+    }
+    out.push_str("\n| quantity | source | paper | computed | difference | | why |\n| --- | --- | ---: | ---: | ---: | --- | --- |\n");
     for row in rows {
-        let [paper, ours, difference, mark] = cells(row);
-        let status = match mark.as_str() {
-            "✓" => "✅",
-            "✗" => "❌",
-            "⚠" => "⚠",
-            _ => "🧪",
-        };
+        let [paper, ours, difference] = cells(row);
+        let [_, mark, _] = sign(row.finding());
         let unit = &row.unit;
         let _ = writeln!(
             out,
-            "| {} / {unit} | {} | {paper} | {ours} | {difference} | {status} | {} |",
+            "| {} / {unit} | {} | {paper} | {ours} | {difference} | {mark} | {} |",
             row.quantity,
             row.place,
             row.why.replace('|', "\\|")
@@ -96,7 +112,20 @@ fn markdown(rows: &[ReproductionRow]) -> String {
 fn document(reproduction: &Reproduction, rows: &[ReproductionRow]) -> serde_json::Value {
     let rows: Vec<_> = rows
         .iter()
-        .map(|r| json!({ "quantity": r.quantity, "where": r.place, "unit": r.unit, "paper": r.paper, "ours": r.ours, "explained": r.explained, "agrees": r.agrees(), "why": r.why }))
+        .map(|r| json!({ "quantity": r.quantity, "where": r.place, "unit": r.unit, "paper": r.paper, "ours": r.ours, "explained": r.explained, "finding": word(r.finding()), "why": r.why }))
         .collect();
     json!({ "key": reproduction.key, "title": reproduction.title, "rows": rows })
+}
+
+/// Stable word for scripts.
+fn word(finding: Finding) -> &'static str {
+    match finding {
+        Finding::Reproduced => "reproduced",
+        Finding::Compatible => "compatible",
+        Finding::Met => "fitted",
+        Finding::Misprint => "misprint",
+        Finding::Departs => "departs",
+        Finding::Fails => "fails",
+        Finding::NotPrinted => "not printed",
+    }
 }

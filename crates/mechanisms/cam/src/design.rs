@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::units::{Dimension, Quantity, Unit};
+use forcewright_contract::catalogue::{Named, source_keys};
 use forcewright_contract::describe::{Located, Origin, Section, Slot};
 use forcewright_contract::metrics::Limit;
-use forcewright_elements::materials;
 
 use crate::cut::{Cut, CutError, CutSide, Purpose, SIDES};
 use crate::law::ForceLaw;
@@ -185,6 +185,12 @@ impl Design {
 }
 
 impl Built {
+    /// Whether nothing is turned, shifted or measured.
+    pub(crate) fn is_as_meant(&self) -> bool {
+        let all = [self.tilt_rad, self.height_m].into_iter().chain(self.turn_rad).chain(self.offset_m);
+        all.into_iter().all(|error| error == 0.0) && self.measured.is_none() && self.random.is_none()
+    }
+
     /// What the profile of a side deviates along its normal.
     fn profile_error(&self, side: usize) -> Option<Arc<dyn NormalError>> {
         let measured = self.measured.as_ref().and_then(|m| m.errors[side].clone()).map(|e| e as Arc<dyn NormalError>);
@@ -455,37 +461,23 @@ fn materials_of(spec: &mut Spec, diagnostics: &mut Diagnostics) -> [Option<Mater
 }
 
 fn fill(material: &mut spec::Material, diagnostics: &mut Diagnostics) -> Material {
+    let named = material.catalogue.as_ref().and_then(|name| Named::find(name, diagnostics));
     let mut sources = Vec::new();
-    let mut name = "given by its values".to_owned();
-    if let Some(wanted) = &material.catalogue {
-        if let Some(entry) = materials::find(&wanted.value) {
-            name.clone_from(&entry.name);
-            let place = wanted.span;
-            let mut take = |slot: &mut Slot<Quantity>, property: Option<&'static materials::Property>, dimension: Dimension, unit: &str| {
-                let (None, Some(property)) = (&slot, property) else { return };
-                let mut quantity = Quantity::from_si(property.value, dimension);
-                if let Ok(unit) = Unit::parse(unit) {
-                    quantity.unit = unit;
-                }
-                let origin = Origin::Catalogue(format!("{}, {}", entry.name, property.kind.name()));
-                sources.extend(property.source_keys());
-                *slot = Some(Located { value: quantity, span: place, origin });
-            };
-            take(&mut material.young_modulus, entry.young_modulus_pa.as_ref(), Dimension::Stress, "GPa");
-            take(&mut material.poisson_ratio, entry.poisson_ratio.as_ref(), Dimension::Ratio, "1");
-            take(&mut material.yield_stress, entry.yield_stress_pa.as_ref(), Dimension::Stress, "MPa");
-            take(&mut material.density, entry.density_kg_per_m3.as_ref(), Dimension::Density, "kg/m^3");
-        } else {
-            let near = forcewright_base::text::closest(&wanted.value, materials::names());
-            diagnostics.push(
-                Diagnostic::error("E0308", wanted.span, format!("`{}` is not in the material catalogue", wanted.value))
-                    .label("no such entry")
-                    .help(near.map_or_else(|| "`forcewright materials` lists them".to_owned(), |n| format!("did you mean \"{n}\"?"))),
-            );
-        }
+    if let Some(named) = named {
+        let entry = named.entry;
+        named.fill(&mut material.young_modulus, entry.young_modulus_pa.as_ref(), "GPa");
+        named.fill(&mut material.poisson_ratio, entry.poisson_ratio.as_ref(), "");
+        named.fill(&mut material.yield_stress, entry.yield_stress_pa.as_ref(), "MPa");
+        named.fill(&mut material.density, entry.density_kg_per_m3.as_ref(), "kg/m^3");
+        sources = source_keys([
+            (&material.young_modulus, entry.young_modulus_pa.as_ref()),
+            (&material.poisson_ratio, entry.poisson_ratio.as_ref()),
+            (&material.yield_stress, entry.yield_stress_pa.as_ref()),
+            (&material.density, entry.density_kg_per_m3.as_ref()),
+        ]);
     }
     Material {
-        name,
+        name: named.map_or_else(|| "given by its values".to_owned(), |n| n.entry.name.clone()),
         young_pa: si(&material.young_modulus),
         poisson: si(&material.poisson_ratio),
         yield_pa: si(&material.yield_stress),

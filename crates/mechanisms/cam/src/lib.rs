@@ -29,12 +29,16 @@ mod study;
 mod synthesis;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
-use forcewright_contract::family::{Analysis, Mechanism as Family, Progress, Reproduction};
+use forcewright_contract::family::{Analysis, Mechanism as Family, Progress};
+use forcewright_contract::metrics::results;
+use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose as StudyPurpose, Studies};
 use forcewright_contract::synthesis::{Skeleton, Synthesiser};
-use forcewright_model::{Counter, Curve, Metric, NoPart, Outcome, PartSet, Status, StatusKind};
+use forcewright_model::{Counter, Curve, NoPart, Outcome, PartSet};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
+
+use metrics::CamMetrics;
 
 pub use analysis::{Behaviour, Measured, Station, measure};
 pub use cut::{Cut, CutError, CutSide, PathPoint, Purpose, SIDES};
@@ -66,11 +70,13 @@ impl Family for Cam {
     }
 
     fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
-        let model = statements::model(design);
-        let limits = statements::limits(design);
+        let stated = [statements::model(design), statements::limits(design)];
         let behaviour = match Behaviour::of(design) {
             Ok(behaviour) => behaviour,
-            Err(error) => return refused(design, format!("the cam cannot be cut: {error:?}")),
+            Err(error) => {
+                let message = format!("the cam cannot be cut: {error:?}");
+                return Analysis::refused::<Self>(&design.title, message, stated, statements::sources(design));
+            }
         };
         progress(1.0);
         let measured = measure(design, &behaviour);
@@ -79,7 +85,7 @@ impl Family for Cam {
             title: design.title.clone(),
             status: statements::status(design, &behaviour),
             error_estimate: None,
-            metrics: metrics_of(design, &measured),
+            metrics: results::<CamMetrics>(|i| measured.value(i), |i| checks::display_unit(design, i)),
             checks: checks::checks(design, &behaviour, &measured),
             curves: curves_of(design, &behaviour),
             counters: vec![
@@ -91,6 +97,7 @@ impl Family for Cam {
         };
         let mut figures = figures::figures(design, &behaviour, &measured);
         figures.extend(motion::curves::figure(design, &behaviour));
+        let [model, limits] = stated;
         Analysis { outcome, figures, model, limits }
     }
 
@@ -132,36 +139,4 @@ fn curves_of(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
     let mut all = figures::curves(design, behaviour);
     all.extend(motion::curves::curves(design, behaviour));
     all
-}
-
-/// The metrics as outputs see them.
-fn metrics_of(design: &Design, measured: &Measured) -> Vec<Metric> {
-    let one = |(index, info): (usize, &forcewright_contract::metrics::MetricInfo)| {
-        Some(Metric {
-            name: info.name,
-            value: measured.value(index)?,
-            dimension: info.dimension,
-            display: checks::display_unit(design, index),
-            doc: info.doc,
-            key: info.key,
-        })
-    };
-    METRICS.iter().enumerate().filter_map(one).collect()
-}
-
-/// An analysis that could not begin.
-fn refused(design: &Design, message: String) -> Analysis {
-    let outcome = Outcome {
-        mechanism: Cam::ID,
-        title: design.title.clone(),
-        status: Status { kind: StatusKind::NotConverged, message, advice: None },
-        error_estimate: None,
-        metrics: Vec::new(),
-        checks: Vec::new(),
-        curves: Vec::new(),
-        counters: Vec::new(),
-        sources: statements::sources(design),
-        warnings: Vec::new(),
-    };
-    Analysis { outcome, figures: Vec::new(), model: statements::model(design), limits: statements::limits(design) }
 }

@@ -3,11 +3,11 @@
 mod bench;
 mod dynamics;
 
-use forcewright_base::diagnostics::{Diagnostics, Span};
-use forcewright_contract::family::{Progress, Reproduction, ReproductionRow};
+use forcewright_base::diagnostics::Span;
+use forcewright_contract::family::Progress;
 use forcewright_contract::project::{Choices, Project};
 use forcewright_contract::read;
-use forcewright_contract::tree::{self, Table, Value};
+use forcewright_contract::reproduction::{Reproduction, ReproductionRow, rows};
 
 use crate::design::{self, Design};
 use crate::mechanism::{Drive, Mechanism, Sense};
@@ -119,40 +119,6 @@ impl Prototype {
 }
 
 fn sanchez2022(progress: Progress<'_>) -> Vec<ReproductionRow> {
-    let mut diagnostics = Diagnostics::default();
-    let table = tree::parse(ROWS, Span::default().source, &mut diagnostics);
-    let Some(Value::List(rows)) = table.get("row").map(|e| &e.item.value) else { return Vec::new() };
     let prototype = prototype().map(|design| Prototype { design });
-    let count = rows.len() as f64;
-    let mut all = Vec::with_capacity(rows.len());
-    for (index, item) in rows.iter().enumerate() {
-        if !progress(index as f64 / count) {
-            break;
-        }
-        let Value::Table(table) = &item.value else { continue };
-        all.push(ReproductionRow {
-            quantity: text(table, "quantity"),
-            place: text(table, "where"),
-            paper: number(table, "paper"),
-            ours: prototype.as_ref().map_or(f64::NAN, |p| p.value(&text(table, "id"))),
-            unit: text(table, "unit"),
-            explained: number(table, "explained"),
-            why: text(table, "why"),
-        });
-    }
-    all
-}
-
-fn text(table: &Table, key: &str) -> String {
-    match table.get(key).map(|e| &e.item.value) {
-        Some(Value::Text(text)) => text.clone(),
-        _ => String::new(),
-    }
-}
-
-fn number(table: &Table, key: &str) -> Option<f64> {
-    match table.get(key).map(|e| &e.item.value) {
-        Some(Value::Number(number)) => Some(*number),
-        _ => None,
-    }
+    rows(ROWS, progress, |id| prototype.as_ref().map_or(f64::NAN, |p| p.value(id)))
 }

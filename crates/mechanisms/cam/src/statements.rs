@@ -24,7 +24,14 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Status {
                 travel(s),
                 format_si(why.gap_m.abs(), &design.units.length, 3)
             ),
-            advice: Some("make the errors smaller, or the brace longer".to_owned()),
+            advice: Some(
+                if design.built.is_as_meant() {
+                    "lengthen `brace_length`, or shorten `stroke`"
+                } else {
+                    "make `[errors]` smaller, or `brace_length` larger"
+                }
+                .to_owned(),
+            ),
         };
     }
     if design.moves() && behaviour.motion.is_none() {

@@ -15,10 +15,10 @@ use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton,
 use forcewright_model::{Outcome, ParameterRow, StatusKind};
 
 use crate::design::{Design, si};
-use crate::metrics::METRICS;
+use crate::metrics::CamMetrics;
 use crate::spec::Spec;
 use limits::Knob;
-use sizing::{Asked, Offer, Size, sizes};
+use sizing::{Asked, Offer, Size, sizes, wound};
 
 /// A mechanism of no particular size, for files that have none.
 pub(crate) const SKELETON: Skeleton = Skeleton {
@@ -76,7 +76,7 @@ pub(crate) fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagno
         .roller_diameters
         .as_ref()
         .map_or_else(|| BEARINGS_MM.iter().map(millimetres).collect(), |typed| typed.value.iter().map(|q| q.si).collect());
-    let limit = |name: &str| requirements?.limits.iter().find(|l| METRICS[l.metric].name == name)?.max;
+    let limit = |name: &str| requirements?.limits.iter().find(|l| l.name::<CamMetrics>() == name)?.max;
     let asked = Asked {
         law,
         band,
@@ -90,6 +90,7 @@ pub(crate) fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagno
         offers,
         most_springs: section.springs_max.as_ref().map_or(6, |c| c.value),
         rollers_m,
+        grade: section.wire_grade.as_ref().map_or_else(String::new, |g| g.value.to_owned()),
     };
     Some(Box::new(Synthesis {
         asked,
@@ -130,17 +131,18 @@ fn offers(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Vec<Offer>> {
 
 impl Synthesis {
     fn written(&self, asked: &Asked, most: usize) -> Vec<Proposal> {
-        picked(sizes(asked), most).iter().map(|size| write::proposal(asked, size, &self.length)).collect()
+        picked(asked, most).iter().map(|size| write::proposal(asked, size, &self.length)).collect()
     }
 }
 
 /// The cheapest of each kind, the best first.
-fn picked(mut found: Vec<Size>, most: usize) -> Vec<Size> {
+fn picked(asked: &Asked, most: usize) -> Vec<Size> {
+    let mut found = sizes(asked);
     found.sort_by(|a, b| a.cost_m3().total_cmp(&b.cost_m3()));
     let mut kept: Vec<Size> = Vec::new();
     for size in found {
         if !kept.iter().any(|k| k.is_near(&size)) {
-            kept.push(size);
+            kept.extend(wound(asked, size));
         }
         if kept.len() == most {
             break;

@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use forcewright_base::units::Unit;
 use forcewright_beam::{Follow, Jump, NetworkError, Path, PeakStress, Point, Settings, Status, trace};
 use forcewright_contract::family::Progress;
-use forcewright_model as model;
 
 use crate::design::Design;
 use crate::force_curve::{Extrema, ForceCurve, Interval, Turn};
@@ -479,7 +478,7 @@ pub(crate) fn mass_kg(design: &Design) -> Option<f64> {
 pub(crate) fn display_unit(design: &Design, index: usize) -> Unit {
     use forcewright_base::units::Dimension as D;
     let Some(info) = METRICS.get(index) else { return Unit::si(D::Ratio) };
-    let limit = design.requirements.iter().flat_map(|r| &r.limits).find(|(i, ..)| *i == index).map(|(.., unit)| unit.clone());
+    let limit = design.requirements.iter().flat_map(|r| &r.limits).find(|l| l.metric == index).map(|l| l.unit.clone());
     let named = |symbol: &str| Unit::parse(symbol).unwrap_or_else(|_| Unit::si(info.dimension));
     limit.unwrap_or_else(|| match info.dimension {
         D::Length => design.units.displacement.clone(),
@@ -498,23 +497,4 @@ pub(crate) fn display_unit(design: &Design, index: usize) -> Unit {
         }
         other => Unit::si(other),
     })
-}
-
-/// The metrics as outputs see them.
-pub(crate) fn metrics(design: &Design, measured: &Measured) -> Vec<model::Metric> {
-    METRICS
-        .iter()
-        .enumerate()
-        .filter_map(|(index, info)| {
-            let value = measured.value(index)?;
-            Some(model::Metric {
-                name: info.name,
-                value,
-                dimension: info.dimension,
-                display: display_unit(design, index),
-                doc: info.doc,
-                key: info.key,
-            })
-        })
-        .collect()
 }

@@ -4,6 +4,7 @@ mod endurance;
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_beam::Theory;
+use forcewright_contract::judge::Comparison;
 use forcewright_model::{Check, CheckState, Sense};
 
 use crate::analysis::{Behaviour, Measured, display_unit};
@@ -37,72 +38,6 @@ struct Context<'a> {
     behaviour: &'a Behaviour,
     measured: &'a Measured,
     requirements: &'a Requirements,
-}
-
-/// What a check compares, before its state is known.
-struct Comparison {
-    code: &'static str,
-    name: String,
-    title: String,
-    value: Option<f64>,
-    limit: Option<f64>,
-    sense: Sense,
-    dimension: Dimension,
-    display: Unit,
-    /// Takes the place of the limit's size in the margin where the limit is zero; without it there is no margin then.
-    scale: Option<f64>,
-    basis: String,
-    /// What would mend a miss.
-    fix: String,
-    /// Why it could not be assessed, where it could not.
-    missing: String,
-    /// Whether the value is that of a path that ends early: it can show a miss, but not that the limit is met.
-    partial: bool,
-    /// Whether the limit is broken although there is no value: what it is about falls without limit.
-    broken: bool,
-}
-
-impl Comparison {
-    fn judge(self) -> Check {
-        let (state, margin) = match (self.value, self.limit) {
-            (Some(value), Some(limit)) => {
-                let distance = Check::margin_of(value, limit, self.sense, self.scale.unwrap_or(1.0));
-                let margin = (limit.abs() > 0.0 || self.scale.is_some()).then_some(distance);
-                // Written so that a value that is not a number misses.
-                let state = match distance >= 0.0 {
-                    true if self.partial => CheckState::NotAssessed,
-                    true => CheckState::Met,
-                    false => CheckState::Missed,
-                };
-                (state, margin)
-            }
-            _ if self.broken => (CheckState::Missed, None),
-            _ => (CheckState::NotAssessed, None),
-        };
-        // Nothing is said about a limit that the rest of the path may still break.
-        let value = self.value.filter(|_| state != CheckState::NotAssessed);
-        let margin = margin.filter(|_| state != CheckState::NotAssessed);
-        let advice = match state {
-            CheckState::Met => None,
-            CheckState::Missed => Some(self.fix),
-            CheckState::NotAssessed => Some(self.missing),
-        };
-        Check {
-            code: self.code,
-            name: self.name,
-            title: self.title,
-            required: true,
-            state,
-            value,
-            limit: self.limit,
-            sense: self.sense,
-            dimension: self.dimension,
-            display: self.display,
-            margin,
-            basis: self.basis,
-            advice,
-        }
-    }
 }
 
 /// The metric that is known although its value may not be finite.
@@ -176,6 +111,7 @@ impl Context<'_> {
             code: "COMP001",
             name: "force".to_owned(),
             title: format!("Force deviation {around} over the best {stroke}"),
+            required: true,
             value: best.map(|(_, deviation)| deviation),
             limit: Some(band),
             sense: Sense::AtMost,
@@ -223,6 +159,7 @@ impl Context<'_> {
             code: "COMP003",
             name: "travel".to_owned(),
             title: "Usable stroke inside the band".to_owned(),
+            required: true,
             value,
             limit: Some(wanted),
             sense: Sense::AtLeast,
@@ -287,6 +224,7 @@ impl Context<'_> {
             code: "COMP002",
             name: "stress".to_owned(),
             title: format!("Largest stress{place}"),
+            required: true,
             value: found.map(|s| s.peak.stress_pa),
             limit: allowable_pa,
             sense: Sense::AtMost,
@@ -325,6 +263,7 @@ impl Context<'_> {
             code,
             name: name.to_owned(),
             title,
+            required: true,
             value,
             limit: Some(limit),
             sense,
@@ -391,6 +330,7 @@ impl Context<'_> {
             code: "COMP007",
             name: "envelope".to_owned(),
             title: format!("Distance to the envelope{place}"),
+            required: true,
             value: found.map(|m| m.margin_m),
             limit: Some(0.0),
             sense: Sense::AtLeast,
@@ -426,6 +366,7 @@ impl Context<'_> {
             code: "COMP008",
             name: "layers".to_owned(),
             title: format!("Layers move alike up to Δ{}", self.so_far()),
+            required: true,
             value: Some(stack.apart_from_m.unwrap_or(end_m)),
             limit: Some(if self.behaviour.whole { end_m } else { self.design.layers() * self.design.load_end }),
             sense: Sense::AtLeast,
@@ -460,10 +401,10 @@ impl Context<'_> {
     /// COMP006: limits on metrics.
     fn limits(&self) -> Vec<Check> {
         let mut all = Vec::new();
-        for (index, min, max, _) in &self.requirements.limits {
-            let Some(info) = METRICS.get(*index) else { continue };
-            for (limit, sense, suffix) in [(min, Sense::AtLeast, "at least"), (max, Sense::AtMost, "at most")] {
-                let Some(limit) = *limit else { continue };
+        for asked in &self.requirements.limits {
+            let info = &METRICS[asked.metric];
+            for (limit, sense, suffix) in [(asked.min, Sense::AtLeast, "at least"), (asked.max, Sense::AtMost, "at most")] {
+                let Some(limit) = limit else { continue };
                 let (value, partial, broken) = match self.behaviour.sway {
                     // Known as far as the path goes, and below any limit where the block turns over.
                     Some(sway) if info.name == LATERAL => {
@@ -471,18 +412,19 @@ impl Context<'_> {
                     }
                     _ => {
                         let broken = sense == Sense::AtMost && scenario::never_ends(self.measured, info.name);
-                        (self.measured.value(*index), false, broken)
+                        (self.measured.value(asked.metric), false, broken)
                     }
                 };
                 let comparison = Comparison {
                     code: "COMP006",
                     name: info.name.to_owned(),
                     title: format!("{} ({suffix})", info.name),
+                    required: true,
                     value,
                     limit: Some(limit),
                     sense,
                     dimension: info.dimension,
-                    display: display_unit(self.design, *index),
+                    display: display_unit(self.design, asked.metric),
                     scale: None,
                     basis: info.doc.to_owned(),
                     fix: self.limit_fix(info.name, broken),

@@ -4,13 +4,13 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::units::{Dimension, Quantity, Unit};
 use forcewright_beam::{Beam, Joint, Joints, Network, Node, Point, Section, Settings, Shape, Theory, ThroughError};
 use forcewright_contract::describe::{Along, Located, Member, Origin, Slot};
+use forcewright_contract::metrics::{Limit, check_order};
 
 use crate::bodies::{self, Body, DrawnNode, Grouping, find_node};
 use crate::endurance::{FatigueLimit, HoldLimit};
 use crate::layout::{self, Layout, Mirror, parse_mirror};
 use crate::loads::{self, Control, Loads};
 use crate::material::{Material, check_complete, fill_materials, typed_material};
-use crate::metrics::METRICS;
 use crate::parts::Making;
 use crate::rules::{check_held, check_joints, check_mirror, check_network};
 use crate::scenario;
@@ -127,8 +127,8 @@ pub struct Requirements {
     pub asked_envelope: Option<Envelope>,
     /// The box that the drawn network stays in: where it does, its copies are in the box asked for.
     pub envelope: Option<Envelope>,
-    /// Limits on metrics: index into [`METRICS`], smallest, largest, unit typed.
-    pub limits: Vec<(usize, Option<f64>, Option<f64>, Unit)>,
+    /// Limits on metrics.
+    pub limits: Vec<Limit>,
 }
 
 /// A box along the axes of coordinates; a side may be infinitely far away.
@@ -350,25 +350,7 @@ fn requirements_of(spec: &Spec, yield_is_known: bool, diagnostics: &mut Diagnost
         );
     }
     check_stroke(spec, sound, diagnostics);
-    let mut limits = Vec::new();
-    for (index, bounds) in requirements.limits.bounds.iter().enumerate() {
-        if let Some(section) = &bounds.present {
-            let (min, max) = (quantity(bounds.min.as_ref()), quantity(bounds.max.as_ref()));
-            let Some(unit) = min.or(max).map(|q| q.unit.clone()) else {
-                if sound {
-                    diagnostics.push(
-                        Diagnostic::error("E0302", section.span, "this limit says nothing")
-                            .label("from this table")
-                            .help("give `min` or `max`"),
-                    );
-                }
-                continue;
-            };
-            check_order("", bounds.min.as_ref(), bounds.max.as_ref(), diagnostics);
-            limits.push((index, min.map(|q| q.si), max.map(|q| q.si), unit));
-        }
-    }
-    debug_assert_eq!(requirements.limits.bounds.len(), METRICS.len());
+    let limits = requirements.limits.resolve(diagnostics);
     check_order("stiffness.", requirements.stiffness.min.as_ref(), requirements.stiffness.max.as_ref(), diagnostics);
     let envelope = envelope_of(requirements, sound, diagnostics);
     Some(Requirements {
@@ -383,21 +365,6 @@ fn requirements_of(spec: &Spec, yield_is_known: bool, diagnostics: &mut Diagnost
         stiffness_max: si(requirements.stiffness.max.as_ref()),
         limits,
     })
-}
-
-/// A least value above the largest one is met by nothing.
-fn check_order(of: &str, min: Option<&Located<Quantity>>, max: Option<&Located<Quantity>>, diagnostics: &mut Diagnostics) {
-    let (Some(min), Some(max)) = (min, max) else { return };
-    if min.value.si <= max.value.si {
-        return;
-    }
-    let message = format!("nothing is at least {} and at most {}", min.value, max.value);
-    let error = Diagnostic::error("E0204", max.span, message).label("less than the least value");
-    diagnostics.push(if min.origin == Origin::File {
-        error.related(min.span, "the least value").help("exchange the two, or remove one")
-    } else {
-        error.help(format!("give `{of}min` as well: without it, it is {}", min.value))
-    });
 }
 
 /// The box; a side that is not given is infinitely far away.

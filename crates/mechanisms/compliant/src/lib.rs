@@ -32,13 +32,18 @@ mod sway;
 mod synthesis;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
-use forcewright_contract::family::{Analysis, Mechanism, Progress, Reproduction};
+use forcewright_contract::family::{Analysis, Mechanism, Progress};
+use forcewright_contract::metrics::results;
+use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose, Studies};
 use forcewright_contract::synthesis::{Skeleton, Synthesiser};
-use forcewright_model::{Counter, NoPart, Outcome, PartSet, Status, StatusKind};
+use forcewright_model::{Counter, NoPart, Outcome, PartSet};
 
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
+
+use analysis::display_unit;
+use metrics::CompliantMetrics;
 
 pub use analysis::{Behaviour, LargestStress, Measured, Snap, measure};
 pub use bodies::{Body, DrawnNode};
@@ -49,7 +54,7 @@ pub use force_curve::{Extrema, ForceCurve, Interval, Turn};
 pub use layout::{Circle, Layout, Mirror, Rows};
 pub use loads::Control;
 pub use material::{Endured, Material};
-pub use metrics::{METRICS, MetricInfo};
+pub use metrics::METRICS;
 pub use parts::Making;
 pub use room::{Margin, Nearest, margin, nearest};
 pub use scenario::{Contact, Flat, Join, Pass, Profile, Stop, Surface, SurfaceRun, TipPath, Touch, Why};
@@ -72,9 +77,10 @@ impl Mechanism for Compliant {
     }
 
     fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
+        let stated = [statements::model(design), statements::limits(design)];
         let behaviour = match Behaviour::of(design, progress) {
             Ok(behaviour) => behaviour,
-            Err(error) => return refused(design, error.to_string()),
+            Err(error) => return Analysis::refused::<Self>(&design.title, error.to_string(), stated, statements::sources(design)),
         };
         let trusted = behaviour.trusted(design);
         let measured = measure(design, &trusted);
@@ -85,7 +91,7 @@ impl Mechanism for Compliant {
             title: design.title.clone(),
             status: status::status(design, &behaviour, &measured),
             error_estimate: behaviour.path.error_estimate.map(|e| e.max(behaviour.interpolation_error)),
-            metrics: analysis::metrics(design, &measured),
+            metrics: results::<CompliantMetrics>(|i| measured.value(i), |i| display_unit(design, i)),
             checks: checks::checks(design, &trusted, &measured),
             curves: figures::curves(design, &behaviour, &measured),
             counters: vec![
@@ -101,7 +107,8 @@ impl Mechanism for Compliant {
             warnings: statements::warnings(design, &trusted, &measured),
         };
         let figures = figures::figures(design, &behaviour, &measured);
-        Analysis { outcome, figures, model: statements::model(design), limits: statements::limits(design) }
+        let [model, limits] = stated;
+        Analysis { outcome, figures, model, limits }
     }
 
     fn parts(design: &Design) -> Result<PartSet, NoPart> {
@@ -135,21 +142,4 @@ impl Mechanism for Compliant {
     fn reproductions() -> &'static [Reproduction] {
         reproduce::ALL
     }
-}
-
-/// An analysis that could not begin.
-fn refused(design: &Design, message: String) -> Analysis {
-    let outcome = Outcome {
-        mechanism: Compliant::ID,
-        title: design.title.clone(),
-        status: Status { kind: StatusKind::NotConverged, message, advice: None },
-        error_estimate: None,
-        metrics: Vec::new(),
-        checks: Vec::new(),
-        curves: Vec::new(),
-        counters: Vec::new(),
-        sources: statements::sources(design),
-        warnings: Vec::new(),
-    };
-    Analysis { outcome, figures: Vec::new(), model: statements::model(design), limits: statements::limits(design) }
 }

@@ -1,22 +1,14 @@
 //! Names of the metrics: stable, so that requirements, studies and scripts agree.
 
 use forcewright_base::units::Dimension;
+use forcewright_contract::metrics::{MetricInfo, Metrics, metric};
 
-/// What is said once about a metric.
-#[derive(Debug)]
-pub struct MetricInfo {
-    /// Stable name.
-    pub name: &'static str,
-    /// Quantity.
-    pub dimension: Dimension,
-    /// One sentence.
-    pub doc: &'static str,
-    /// Whether the command line prints it.
-    pub key: bool,
-}
+/// The metrics of this family.
+#[derive(Debug, Default)]
+pub(crate) struct CompliantMetrics;
 
-const fn metric(name: &'static str, dimension: Dimension, key: bool, doc: &'static str) -> MetricInfo {
-    MetricInfo { name, dimension, doc, key }
+impl Metrics for CompliantMetrics {
+    const ALL: &'static [MetricInfo] = METRICS;
 }
 
 /// Every metric of the family, in the order of results.

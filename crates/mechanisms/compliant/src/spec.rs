@@ -4,9 +4,10 @@ use forcewright_base::units::{Dimension, Quantity};
 use forcewright_beam::{Network, Shape};
 use forcewright_contract::describe::{Along, Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
+use forcewright_contract::metrics::Limits;
 use forcewright_contract::studies::Studies;
 
-use crate::metrics::METRICS;
+use crate::metrics::CompliantMetrics;
 use crate::scenario::Scenario;
 use crate::synthesis::Synthesise;
 
@@ -49,7 +50,7 @@ pub(crate) struct Requirements {
     pub hold: Section<HoldRequirement>,
     pub stiffness: Section<StiffnessRequirement>,
     pub envelope: Section<Envelope>,
-    pub limits: Section<Limits>,
+    pub limits: Section<Limits<CompliantMetrics>>,
 }
 
 /// The box that the layout, or the drawn network alone, stays in.
@@ -91,27 +92,6 @@ pub(crate) struct HoldRequirement {
 /// Which slopes of the force are allowed.
 #[derive(Debug, Default)]
 pub(crate) struct StiffnessRequirement {
-    pub min: Slot<Quantity>,
-    pub max: Slot<Quantity>,
-}
-
-/// Bounds on metrics, in the order of [`METRICS`].
-#[derive(Debug)]
-pub(crate) struct Limits {
-    pub bounds: Vec<Section<Bounds>>,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        let bounds = METRICS.iter().map(|info| Section { present: None, body: Bounds { dimension: info.dimension, min: None, max: None } });
-        Self { bounds: bounds.collect() }
-    }
-}
-
-/// A smallest and a largest value of a metric.
-#[derive(Debug)]
-pub(crate) struct Bounds {
-    dimension: Dimension,
     pub min: Slot<Quantity>,
     pub max: Slot<Quantity>,
 }
@@ -410,21 +390,6 @@ impl Describe for Envelope {
         v.point(&side("x", "From left to right, two values of x; without it any x."), &mut self.x);
         v.point(&side("y", "From bottom to top, two values of y; without it any y."), &mut self.y);
         v.choice(&Param::new("of", "What stays in it.").default("layout"), ENVELOPED, &mut self.of);
-    }
-}
-
-impl Describe for Limits {
-    fn describe(&mut self, v: &mut dyn Visitor) {
-        for (info, bounds) in METRICS.iter().zip(&mut self.bounds) {
-            bounds.describe(v, &Param::new(info.name, info.doc));
-        }
-    }
-}
-
-impl Describe for Bounds {
-    fn describe(&mut self, v: &mut dyn Visitor) {
-        v.quantity(&Param::new("min", "Smallest value.").of(self.dimension), &mut self.min);
-        v.quantity(&Param::new("max", "Largest value.").of(self.dimension), &mut self.max);
     }
 }
 

@@ -15,6 +15,7 @@ use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton,
 use forcewright_model::{Outcome, ParameterRow, StatusKind};
 
 use crate::design::{Design, StressLimit, si};
+use crate::metrics::CompliantMetrics;
 use crate::spec::Spec;
 use limits::Knob;
 use sizing::{Asked, Size, Windows, sizes};
@@ -112,10 +113,7 @@ fn asked(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<
         let help = "give the size of the room instead: `room = [\"80 mm\", \"60 mm\"]` in `[synthesise]`";
         diagnostics.push(Diagnostic::error("E0531", envelope.span, message).label("around what?").help(help));
     }
-    let limit = |name: &str| {
-        let bounds = requirements?.limits.iter().find(|(i, ..)| crate::METRICS.get(*i).is_some_and(|m| m.name == name))?;
-        bounds.1
-    };
+    let limit = |name: &str| requirements?.limits.iter().find(|l| l.name::<CompliantMetrics>() == name)?.min;
     let depth = &spec.synthesise.depth;
     let [depth_min_m, depth_max_m] = [&depth.min, &depth.max].map(|side| si(side.as_ref()));
     if let (Some(min), Some(max), Some(typed)) = (depth_min_m, depth_max_m, &depth.max)

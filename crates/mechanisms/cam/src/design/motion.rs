@@ -120,12 +120,18 @@ pub(super) fn check_ends(spec: &Spec, purpose: &Purpose, ends_m: Option<[f64; 2]
     if ends_m.is_none_or(|ends| ends.into_iter().all(inside)) {
         return;
     }
-    let place = spec.motion.rise.as_ref().or(spec.motion.start.as_ref()).map_or_else(Span::default, |r| r.span);
+    // Something that is let go goes where the forces take it: only its start can lie outside.
+    let (rise, start) = (spec.motion.rise.as_ref().filter(|_| !is_released(spec)), spec.motion.start.as_ref());
+    let place = rise.or(start).map_or_else(Span::default, |r| r.span);
+    let help = match rise {
+        Some(_) => "shorten `rise`, or move `start`".to_owned(),
+        None => format!("let `start` be at most {}", spec.design.stroke.as_ref().map_or_else(String::new, |s| s.value.to_string())),
+    };
     diagnostics.push(
         Diagnostic::error("E0605", place, "the motion leaves the stroke for which the cam is cut")
             .label("here")
             .related(spec.design.stroke.as_ref().map_or_else(Span::default, |s| s.span), "the stroke")
-            .help("shorten `rise`, or move `start`"),
+            .help(help),
     );
 }
 

@@ -10,7 +10,7 @@ use crate::analysis::{Behaviour, measure_scalars};
 use crate::cut::Cut;
 use crate::design::Design;
 use crate::law::ForceLaw;
-use crate::metrics::METRICS;
+use crate::metrics::{CamMetrics, METRICS};
 
 /// Panels of the window, each with a station in its middle.
 const PANELS: usize = 40;
@@ -170,7 +170,7 @@ fn measures(design: &Design) -> Vec<Measure> {
             "contact_force_min_motion" if design.moves() => (lower, requirement) = (0.0, "contact_motion"),
             _ => {}
         }
-        for limit in requirements.iter().flat_map(|r| &r.limits).filter(|l| METRICS[l.metric].name == name) {
+        for limit in requirements.iter().flat_map(|r| &r.limits).filter(|l| l.name::<CamMetrics>() == name) {
             lower = lower.max(limit.min.unwrap_or(lower));
             upper = upper.min(limit.max.unwrap_or(upper));
             requirement = METRICS[limit.metric].name;

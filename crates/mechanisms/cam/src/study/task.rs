@@ -1,11 +1,11 @@
 //! From `[optimise]` and the requirements to a search: its goal and its limits.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
-use forcewright_base::text::closest;
 use forcewright_contract::describe::Section;
+use forcewright_contract::objective::{Goal, Way, goal_of};
 use forcewright_contract::studies::Objective;
 use forcewright_study::evaluator::Evaluator;
-use forcewright_study::task::{Band, Goal, Limit, Step, Task};
+use forcewright_study::task::{self, Band, Limit, Step, Task};
 
 use super::knobs::Knobs;
 use super::many::{Many, SCALARS, STATIONS};
@@ -13,40 +13,27 @@ use crate::design::Design;
 use crate::metrics::METRICS;
 
 /// What can be optimised, with what it means, and whether it can be made large.
-const OBJECTIVES: &[(&str, &str)] = &[
-    ("force_deviation", "largest distance of the force, up or down, from what is required"),
-    ("force_spread", "half width of the band that the force needs, up and down, its level free"),
-    ("hysteresis", "mean up − mean down over the mean"),
-    ("spring_length_max", "largest length of the springs"),
-    ("width", "largest width over the stroke"),
-    ("height", "height over the stroke"),
-    ("cam_length", "extent of the cam along the travel"),
-    ("contact_force_max", "largest force between roller and cam"),
-    ("pressure_angle_max", "largest pressure angle"),
-    ("peak_force_ratio", "largest force in the motion over that at rest"),
-    ("moving_mass", "mass of what moves"),
+const OBJECTIVES: &[Goal] = &[
+    small("force_deviation", "largest distance of the force, up or down, from what is required"),
+    small("force_spread", "half width of the band that the force needs, up and down, its level free"),
+    small("hysteresis", "mean up − mean down over the mean"),
+    small("spring_length_max", "largest length of the springs"),
+    small("width", "largest width over the stroke"),
+    small("height", "height over the stroke"),
+    small("cam_length", "extent of the cam along the travel"),
+    small("contact_force_max", "largest force between roller and cam"),
+    small("pressure_angle_max", "largest pressure angle"),
+    small("peak_force_ratio", "largest force in the motion over that at rest"),
+    small("moving_mass", "mass of what moves"),
 ];
+
+const fn small(name: &'static str, doc: &'static str) -> Goal {
+    Goal { name, doc, way: Way::Small }
+}
 
 /// Builds the task; what is wrong with the objective is reported.
 pub(super) fn task(design: &Design, knobs: Knobs, objective: &Section<Objective>, diagnostics: &mut Diagnostics) -> Option<Task> {
-    let place = objective.present.as_ref().map(|p| p.span).unwrap_or_default();
-    let Some(slot) = &objective.minimise else {
-        let (span, label) = objective.maximise.as_ref().map_or((place, "this table"), |m| (m.span, "made large"));
-        diagnostics.push(
-            Diagnostic::error("E0315", span, "the objectives of cams are made small")
-                .label(label)
-                .help("give `minimise = \"force_deviation\"` or another"),
-        );
-        return None;
-    };
-    let names = || OBJECTIVES.iter().map(|(name, _)| *name);
-    let Some(name) = names().find(|name| *name == slot.value) else {
-        let all = OBJECTIVES.iter().map(|(name, doc)| format!("`{name}`: {doc}")).collect::<Vec<_>>().join("; ");
-        let help = closest(&slot.value, names()).map_or(all, |near| format!("did you mean `{near}`?"));
-        diagnostics
-            .push(Diagnostic::error("E0315", slot.span, format!("`{}` cannot be optimised", slot.value)).label("no objective").help(help));
-        return None;
-    };
+    let (name, _) = goal_of(objective, OBJECTIVES, diagnostics)?;
     for (span, what) in [(objective.window.as_ref().map(|w| w.span), "window"), (objective.target.as_ref().map(|t| t.span), "target")] {
         if let Some(span) = span {
             let error = Diagnostic::error("E0305", span, format!("the objectives of cams have no `{what}`")).label("not needed");
@@ -54,10 +41,11 @@ pub(super) fn task(design: &Design, knobs: Knobs, objective: &Section<Objective>
             return None;
         }
     }
+    let place = objective.minimise.as_ref().map(|m| m.span).unwrap_or_default();
     let band = design.requirements.as_ref().and_then(|r| r.force.as_ref());
     if name == "force_deviation" && band.is_none() {
         diagnostics.push(
-            Diagnostic::error("E0302", slot.span, "`force_deviation` needs a force that is required")
+            Diagnostic::error("E0302", place, "`force_deviation` needs a force that is required")
                 .label("this objective")
                 .help("give `requirements.force`, or minimise `force_spread`"),
         );
@@ -75,21 +63,21 @@ fn scalar(name: &str) -> Option<usize> {
     SCALARS.iter().position(|s| *s == name).map(|i| 3 * STATIONS + i)
 }
 
-fn goal(many: &Many, name: &str) -> (Goal, Vec<Band>) {
+fn goal(many: &Many, name: &str) -> (task::Goal, Vec<Band>) {
     let both = |level: Option<f64>| [0, 1].map(|i| Band { values: i * STATIONS..(i + 1) * STATIONS, level, half_width: None }).to_vec();
     let wanted = many.wanted_n();
     let last = (STATIONS - 1) as f64;
     match name {
-        "force_deviation" if wanted.iter().all(|w| w.to_bits() == wanted[0].to_bits()) => (Goal::HalfWidth, both(Some(wanted[0]))),
+        "force_deviation" if wanted.iter().all(|w| w.to_bits() == wanted[0].to_bits()) => (task::Goal::HalfWidth, both(Some(wanted[0]))),
         // Without one level: squares, each relative to what is wanted there.
         "force_deviation" => {
             let scale = wanted.iter().sum::<f64>() / wanted.len() as f64;
             let targets = wanted.iter().chain(&wanted).copied().collect();
-            (Goal::Squares { values: 0..2 * STATIONS, targets, scale }, Vec::new())
+            (task::Goal::Squares { values: 0..2 * STATIONS, targets, scale }, Vec::new())
         }
         "force_spread" => {
             let values = 0..2 * STATIONS;
-            (Goal::HalfWidth, vec![Band { values, level: None, half_width: None }])
+            (task::Goal::HalfWidth, vec![Band { values, level: None, half_width: None }])
         }
         // (Mean up − mean down) over the level wanted: Simpson's weights.
         "hysteresis" => {
@@ -106,11 +94,11 @@ fn goal(many: &Many, name: &str) -> (Goal, Vec<Band>) {
             let one = |i: usize, sign: f64| sign * weight(i) / (3.0 * last * level);
             let up = (0..STATIONS).map(|i| (i, one(i, 1.0)));
             let down = (0..STATIONS).map(|i| (STATIONS + i, one(i, -1.0)));
-            (Goal::Values(up.chain(down).collect()), Vec::new())
+            (task::Goal::Values(up.chain(down).collect()), Vec::new())
         }
         _ => {
             let at = scalar(name).unwrap_or(0);
-            (Goal::Values(vec![(at, 1.0 / scale_of(name))]), Vec::new())
+            (task::Goal::Values(vec![(at, 1.0 / scale_of(name))]), Vec::new())
         }
     }
 }

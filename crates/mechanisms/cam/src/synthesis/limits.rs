@@ -3,7 +3,8 @@
 use forcewright_base::units::{Unit, format_number, format_si};
 use forcewright_contract::synthesis::Relaxation;
 
-use super::sizing::{Asked, sizes};
+use super::picked;
+use super::sizing::Asked;
 
 /// A limit that can be loosened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +46,7 @@ fn loosened(asked: &Asked, knob: Knob, factor: f64) -> Option<Asked> {
 
 /// The least loosening that helps, a little more by `slack`, and what is asked then.
 pub(super) fn relaxed(asked: &Asked, knob: Knob, slack: f64, length: &Unit) -> Option<(Relaxation, Asked)> {
-    let helps = |factor: f64| loosened(asked, knob, factor).is_some_and(|other| !sizes(&other).is_empty());
+    let helps = |factor: f64| loosened(asked, knob, factor).is_some_and(|other| !picked(&other, 1).is_empty());
     if !helps(FARTHEST) {
         return None;
     }

@@ -2,7 +2,7 @@
 
 use forcewright_base::units::{Dimension, Quantity};
 use forcewright_contract::data::DataFile;
-use forcewright_contract::describe::{Describe, Param, Slot, Visitor};
+use forcewright_contract::describe::{Describe, Param, Slot, Visitor, Word};
 
 /// What a synthesis may use.
 #[derive(Debug, Default)]
@@ -13,8 +13,17 @@ pub(crate) struct Synthesise {
     pub springs_file: Slot<DataFile>,
     pub extension_max: Slot<Quantity>,
     pub springs_max: Slot<u32>,
+    pub wire_grade: Slot<&'static str>,
     pub roller_diameters: Slot<Vec<Quantity>>,
 }
+
+/// Grades of EN 10270-1.
+const GRADES: &[Word] = &[
+    Word { word: "SM", doc: "cold drawn, medium strength, for static loads" },
+    Word { word: "DM", doc: "cold drawn, medium strength, for changing loads" },
+    Word { word: "SH", doc: "cold drawn, high strength, for static loads" },
+    Word { word: "DH", doc: "cold drawn, high strength, for changing loads" },
+];
 
 impl Describe for Synthesise {
     fn describe(&mut self, v: &mut dyn Visitor) {
@@ -35,6 +44,8 @@ impl Describe for Synthesise {
             &mut self.extension_max,
         );
         v.count(&Param::new("springs_max", "Most springs side by side.").within(1.0, 32.0).default("6"), &mut self.springs_max);
+        let grade = "Without `springs_file`: grade of the wire of EN 10270-1 of which the springs are wound.";
+        v.choice(&Param::new("wire_grade", grade).default("SH"), GRADES, &mut self.wire_grade);
         v.quantities(
             &length("roller_diameters", "Rollers that there are; by default ball bearings from 10 mm to 32 mm.").within(1e-3, 1.0),
             32,

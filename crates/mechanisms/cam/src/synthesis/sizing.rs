@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use forcewright_elements::springs::{Helix, Wanted, extension_springs};
+
 use crate::cut::{Cut, CutSide, Purpose, SIDES};
 use crate::law::ForceLaw;
 use crate::mechanism::{Bodies, Drive, Mechanism, Sense, SpringMass};
@@ -31,6 +33,8 @@ pub(super) struct Asked {
     pub offers: Vec<Offer>,
     pub most_springs: u32,
     pub rollers_m: Vec<f64>,
+    /// Grade of the wire of which free springs are wound.
+    pub grade: String,
 }
 
 /// A size that keeps to all.
@@ -41,6 +45,8 @@ pub(super) struct Size {
     pub rest_m: f64,
     pub most_m: f64,
     pub spring_kg: f64,
+    /// How a free spring is wound.
+    pub helix: Option<Helix>,
     pub start_m: f64,
     pub brace_m: f64,
     pub roller_m: f64,
@@ -77,7 +83,23 @@ impl Size {
     }
 }
 
-/// Every size that keeps to what is asked.
+/// Numbers of free springs side by side that are tried: in pairs on either side of the plate, so that nothing tilts.
+const COUNTS: [u32; 7] = [1, 2, 4, 6, 8, 12, 16];
+
+/// The size with the fewest springs that can be wound, as they are wound; a spring of a catalogue is there.
+pub(super) fn wound(asked: &Asked, size: Size) -> Option<Size> {
+    if !asked.offers.iter().any(|offer| matches!(offer, Offer::Free { .. })) {
+        return Some(size);
+    }
+    COUNTS.iter().filter(|n| **n <= asked.most_springs).map(|n| f64::from(*n)).find_map(|count| {
+        let rate_n_per_m = size.rate_n_per_m / count;
+        let wanted = Wanted { rate_n_per_m, rest_length_m: size.rest_m, longest_m: size.most_m, initial_force_n: 0.0, grade: &asked.grade };
+        let lightest = *extension_springs(&wanted).ok()?.first()?;
+        Some(Size { count, rate_n_per_m, spring_kg: lightest.mass_kg, helix: Some(lightest.helix), ..size })
+    })
+}
+
+/// Every size that keeps to what is asked; free springs are one, and not yet wound.
 pub(super) fn sizes(asked: &Asked) -> Vec<Size> {
     let work_j = asked.law.work_j(asked.stroke_m);
     let mut found = Vec::new();
@@ -158,6 +180,7 @@ fn braced(asked: &Asked, spring: [f64; 5], (roller_m, start_m): (f64, f64)) -> O
             rest_m: rest,
             most_m: most,
             spring_kg: mass,
+            helix: None,
             start_m,
             brace_m,
             roller_m,

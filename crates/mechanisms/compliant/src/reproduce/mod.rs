@@ -3,13 +3,13 @@
 mod beam_forces;
 mod end_effector;
 
-use forcewright_base::diagnostics::{Diagnostics, Span};
+use forcewright_base::diagnostics::Span;
 use forcewright_base::maths;
 use forcewright_beam::Shape;
-use forcewright_contract::family::{Progress, Reproduction, ReproductionRow};
+use forcewright_contract::family::Progress;
 use forcewright_contract::project::{Choices, Project};
 use forcewright_contract::read;
-use forcewright_contract::tree::{self, Table, Value};
+use forcewright_contract::reproduction::{Reproduction, ReproductionRow, rows};
 
 use crate::analysis::{Behaviour, Measured, measure};
 use crate::design::{self, Design};
@@ -266,34 +266,6 @@ fn scaled_shapes(shapes: &Solved, scale: f64) -> Vec<String> {
 }
 
 fn lan2010(progress: Progress<'_>) -> Vec<ReproductionRow> {
-    let mut diagnostics = Diagnostics::default();
-    let table = tree::parse(ROWS, Span::default().source, &mut diagnostics);
-    let Some(Value::List(rows)) = table.get("row").map(|e| &e.item.value) else { return Vec::new() };
     let lan = Lan::solve(progress);
-    let tables = rows.iter().filter_map(|item| if let Value::Table(table) = &item.value { Some(table) } else { None });
-    tables
-        .map(|table| ReproductionRow {
-            quantity: text(table, "quantity"),
-            place: text(table, "where"),
-            paper: number(table, "paper"),
-            ours: lan.as_ref().map_or(f64::NAN, |lan| lan.value(&text(table, "id"))),
-            unit: text(table, "unit"),
-            explained: number(table, "explained"),
-            why: text(table, "why"),
-        })
-        .collect()
-}
-
-fn text(table: &Table, key: &str) -> String {
-    match table.get(key).map(|e| &e.item.value) {
-        Some(Value::Text(text)) => text.clone(),
-        _ => String::new(),
-    }
-}
-
-fn number(table: &Table, key: &str) -> Option<f64> {
-    match table.get(key).map(|e| &e.item.value) {
-        Some(Value::Number(number)) => Some(*number),
-        _ => None,
-    }
+    rows(ROWS, &mut |_| true, |id| lan.as_ref().map_or(f64::NAN, |lan| lan.value(id)))
 }

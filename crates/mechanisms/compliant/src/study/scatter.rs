@@ -2,13 +2,14 @@
 
 use forcewright_base::units::Dimension;
 use forcewright_beam::{BatchSolver, CurveSolver, DesignError, Network, Response, Settings, Shape, Status, Variant};
+use forcewright_contract::metrics::Limit;
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace, one_by_one};
 
 use super::knobs::{Knob, Knobs};
 use crate::analysis::{PAPER_BAND, RANGE_FRACTION};
 use crate::design::{Design, Requirements};
 use crate::force_curve::{ForceCurve, Interval};
-use crate::metrics::METRICS;
+use crate::metrics::{CompliantMetrics, METRICS};
 
 /// Displacements at which a curve is computed, rest included: between them it is a cubic.
 const STATIONS: usize = 41;
@@ -180,8 +181,8 @@ fn measures(design: &Design) -> Vec<Measure> {
             }
             _ => {}
         }
-        for (_, min, max, _) in requirements.iter().flat_map(|r| &r.limits).filter(|(limited, ..)| *limited == index) {
-            bounds = (bounds.0.max(min.unwrap_or(bounds.0)), bounds.1.min(max.unwrap_or(bounds.1)));
+        for limit in requirements.iter().flat_map(|r| &r.limits).filter(|l| l.metric == index) {
+            bounds = (bounds.0.max(limit.min.unwrap_or(bounds.0)), bounds.1.min(limit.max.unwrap_or(bounds.1)));
             requirement = name;
         }
         all.push(measure(name, requirement, info.dimension.si_symbol(), bounds));
@@ -203,7 +204,7 @@ pub(crate) fn not_measured(design: &Design) -> Vec<&'static str> {
         missing.push("stress");
     }
     missing.extend(requirements.endurance());
-    let limited = requirements.limits.iter().filter_map(|(index, ..)| Some(METRICS.get(*index)?.name));
+    let limited = requirements.limits.iter().map(Limit::name::<CompliantMetrics>);
     missing.extend(limited.filter(|name| !MEASURED.contains(name)));
     missing
 }

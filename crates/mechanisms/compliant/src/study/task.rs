@@ -1,34 +1,38 @@
 //! From `[optimise]` and the requirements to a search: its goal, its bands, its limits.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
-use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, format_si};
 use forcewright_contract::data::{Cell, Column, DataFile, rows};
 use forcewright_contract::describe::{Located, Section};
+use forcewright_contract::objective::{Goal, Way, goal_of};
 use forcewright_contract::read::deferred_quantities;
 use forcewright_contract::studies::Objective;
 use forcewright_contract::tree::{Item, Value};
 use forcewright_study::evaluator::Variable;
-use forcewright_study::task::{Band, Goal, Limit, Step, Task};
+use forcewright_study::task::{self, Band, Limit, Step, Task};
 
 use super::knobs::Knobs;
 use super::mass;
 use super::search::{Block, Edge, Search};
 use crate::analysis::{PAPER_BAND, mass_kg};
 use crate::design::{Design, Requirements};
-use crate::metrics::METRICS;
+use crate::metrics::CompliantMetrics;
 
 /// What can be optimised, with what it means.
-const OBJECTIVES: &[(&str, &str)] = &[
-    ("force_deviation", "half width of the band that the force needs over `window`, or over the best stroke of `requirements.travel`"),
-    ("flat_ratio", "stroke inside the required band with a free level, over the travel"),
-    ("band_ratio", "stroke inside the required band around the nominal force, over the travel"),
-    ("force_at_end", "force at the full travel"),
-    ("force_ratio", "F(a)/F(b) − 1 with `window = [\"b\", \"a\"]`: eq. (1) of Lan, Wang & Chen 2010"),
-    ("stress_max", "largest stress over the travel"),
-    ("safety_factor", "yield stress over the largest stress"),
-    ("force_target", "sum of squared differences to the curve in `target` or `target_file`"),
-    ("mass", "mass of the beams, whole layout"),
+const OBJECTIVES: &[Goal] = &[
+    Goal {
+        name: "force_deviation",
+        doc: "half width of the band that the force needs over `window`, or over the best stroke of `requirements.travel`",
+        way: Way::Small,
+    },
+    Goal { name: "flat_ratio", doc: "stroke inside the required band with a free level, over the travel", way: Way::Large },
+    Goal { name: "band_ratio", doc: "stroke inside the required band around the nominal force, over the travel", way: Way::Large },
+    Goal { name: "force_at_end", doc: "force at the full travel", way: Way::Either },
+    Goal { name: "force_ratio", doc: "F(a)/F(b) − 1 with `window = [\"b\", \"a\"]`: eq. (1) of Lan, Wang & Chen 2010", way: Way::Small },
+    Goal { name: "stress_max", doc: "largest stress over the travel", way: Way::Small },
+    Goal { name: "safety_factor", doc: "yield stress over the largest stress", way: Way::Large },
+    Goal { name: "force_target", doc: "sum of squared differences to the curve in `target` or `target_file`", way: Way::Small },
+    Goal { name: "mass", doc: "mass of the beams, whole layout", way: Way::Small },
 ];
 
 /// Where a window that may move begins at first, as part of the travel.
@@ -38,10 +42,10 @@ const LEAST_WINDOW: f64 = 0.02;
 
 /// A goal while it is put together.
 struct Posed {
-    goal: Goal,
+    goal: task::Goal,
     bands: Vec<Band>,
     /// Bands and goal of a step before, with the window held.
-    before: Option<(Goal, Vec<Band>)>,
+    before: Option<(task::Goal, Vec<Band>)>,
 }
 
 /// Builds the task; what is wrong with the objective is reported. `given` is the accuracy that the file asks for.
@@ -51,7 +55,7 @@ pub(crate) fn task(
     (objective, given): (&Section<Objective>, Option<f64>),
     diagnostics: &mut Diagnostics,
 ) -> Option<Task> {
-    let (name, large) = named(objective, diagnostics)?;
+    let (name, large) = goal_of(objective, OBJECTIVES, diagnostics)?;
     let wanted = Wanted::new(design, name, objective, diagnostics)?;
     let search = Search::new(design, knobs, given, &wanted);
     let limits = limits(design, &search, &wanted);
@@ -64,54 +68,6 @@ pub(crate) fn task(
     steps.push(Step { goal: posed.goal, bands: posed.bands, held: Vec::new() });
     let title = format!("`{name}` as {} as possible", if large { "large" } else { "small" });
     Some(Task { evaluator: Box::new(search), title, steps, limits })
-}
-
-/// The objective's name, and whether it is made large.
-fn named<'a>(objective: &'a Section<Objective>, diagnostics: &mut Diagnostics) -> Option<(&'static str, bool)> {
-    let place = objective.present.as_ref().map(|p| p.span).unwrap_or_default();
-    let (slot, large): (&'a Located<String>, bool) = match (&objective.minimise, &objective.maximise) {
-        (Some(slot), None) => (slot, false),
-        (None, Some(slot)) => (slot, true),
-        (Some(_), Some(other)) => {
-            diagnostics.push(
-                Diagnostic::error("E0305", other.span, "`minimise` and `maximise` exclude each other")
-                    .label("the second of two")
-                    .help("keep one"),
-            );
-            return None;
-        }
-        (None, None) => {
-            diagnostics.push(
-                Diagnostic::error("E0302", place, "the objective says nothing")
-                    .label("this table")
-                    .help("give `minimise = \"force_deviation\"`, `maximise = \"flat_ratio\"` or another"),
-            );
-            return None;
-        }
-    };
-    let names = || OBJECTIVES.iter().map(|(name, _)| *name);
-    let Some(name) = names().find(|name| *name == slot.value) else {
-        let all = OBJECTIVES.iter().map(|(name, doc)| format!("`{name}`: {doc}")).collect::<Vec<_>>().join("; ");
-        let help = closest(&slot.value, names()).map_or(all, |near| format!("did you mean `{near}`?"));
-        diagnostics
-            .push(Diagnostic::error("E0315", slot.span, format!("`{}` cannot be optimised", slot.value)).label("no objective").help(help));
-        return None;
-    };
-    let sense = match name {
-        "force_deviation" | "force_ratio" | "force_target" | "stress_max" | "mass" => Some(false),
-        "flat_ratio" | "band_ratio" | "safety_factor" => Some(true),
-        _ => None,
-    };
-    if sense.is_some_and(|s| s != large) {
-        let (right, wrong) = if large { ("minimise", "maximise") } else { ("maximise", "minimise") };
-        diagnostics.push(
-            Diagnostic::error("E0315", slot.span, format!("`{name}` has no best value that way"))
-                .label("the wrong way round")
-                .help(format!("write `{right} = \"{name}\"` instead of `{wrong}`")),
-        );
-        return None;
-    }
-    Some((name, large))
 }
 
 /// What the evaluator must compute for an objective and the requirements.
@@ -267,41 +223,41 @@ impl Wanted {
         };
         let own = search.knobs.variables.len();
         match self.name {
-            "force_deviation" => Posed { goal: Goal::HalfWidth, bands: vec![band(nominal, None)], before: None },
+            "force_deviation" => Posed { goal: task::Goal::HalfWidth, bands: vec![band(nominal, None)], before: None },
             "flat_ratio" | "band_ratio" => {
                 let level = if self.name == "band_ratio" { nominal } else { None };
                 let per_travel = 1.0 / design.load_end;
                 Posed {
-                    goal: Goal::Variables(vec![(own, per_travel), (own + 1, -per_travel)]),
+                    goal: task::Goal::Variables(vec![(own, per_travel), (own + 1, -per_travel)]),
                     bands: vec![band(level, Some(half_width))],
-                    before: Some((Goal::HalfWidth, vec![band(level, None)])),
+                    before: Some((task::Goal::HalfWidth, vec![band(level, None)])),
                 }
             }
             "force_ratio" => {
                 let block = self.blocks.iter().find(|b| matches!(b, Block::ForceRatio(_)));
                 let at = block.map_or(0, |b| search.values(b).start);
                 // As close to zero as possible, from either side.
-                plain(Goal::Squares { values: at..at + 1, targets: vec![0.0], scale: 1.0 })
+                plain(task::Goal::Squares { values: at..at + 1, targets: vec![0.0], scale: 1.0 })
             }
             "force_target" => {
                 let block = self.blocks.iter().find(|b| matches!(b, Block::Forces(at) if at.len() == self.target_n.len()));
                 let values = block.map_or(0..0, |b| search.values(b));
                 let scale = self.target_n.iter().fold(f64::MIN_POSITIVE, |m, f| m.max(f.abs()));
-                plain(Goal::Squares { values, targets: self.target_n.clone(), scale })
+                plain(task::Goal::Squares { values, targets: self.target_n.clone(), scale })
             }
             "force_at_end" => {
                 let at = search.values(&Block::Forces(vec![design.load_end])).start;
-                plain(Goal::Values(vec![(at, if large { -1.0 } else { 1.0 })]))
+                plain(task::Goal::Values(vec![(at, if large { -1.0 } else { 1.0 })]))
             }
             "mass" => {
                 let at = self.blocks.iter().find(|b| matches!(b, Block::Mass(_))).map_or(0, |b| search.values(b).start);
                 // As a part of the first mass, so that a milligram is not taken for nothing.
-                plain(Goal::Values(vec![(at, 1.0 / mass_kg(design).unwrap_or(1.0))]))
+                plain(task::Goal::Values(vec![(at, 1.0 / mass_kg(design).unwrap_or(1.0))]))
             }
             // The largest stress is small where the safety factor is large.
             _ => {
                 let scale = design.common_allowable_pa().or(design.yield_pa(0)).unwrap_or(1e6);
-                plain(Goal::Largest { values: search.values(&Block::Stress), scale })
+                plain(task::Goal::Largest { values: search.values(&Block::Stress), scale })
             }
         }
     }
@@ -362,7 +318,7 @@ fn measured_curve(file: &DataFile, diagnostics: &mut Diagnostics) -> Option<Vec<
 /// A limit on a metric: least and largest value.
 fn limit(requirements: Option<&Requirements>, name: &str) -> Option<(Option<f64>, Option<f64>)> {
     let limits = &requirements?.limits;
-    limits.iter().find(|(index, ..)| METRICS.get(*index).is_some_and(|m| m.name == name)).map(|(_, min, max, _)| (*min, *max))
+    limits.iter().find(|l| l.name::<CompliantMetrics>() == name).map(|l| (l.min, l.max))
 }
 
 /// Metrics on which a search keeps limits.
@@ -382,9 +338,8 @@ const KEPT: [&str; 10] = [
 /// Requirements that a search does not see: they are checked at its end.
 pub(crate) fn not_kept(design: &Design) -> Vec<&'static str> {
     let limits = design.requirements.iter().flat_map(|r| &r.limits);
-    let limits = limits
-        .filter_map(|(index, ..)| METRICS.get(*index).map(|m| m.name))
-        .filter(|name| !KEPT.contains(name) || (*name == "mass" && mass_kg(design).is_none()));
+    let limits =
+        limits.map(|l| l.name::<CompliantMetrics>()).filter(|name| !KEPT.contains(name) || (*name == "mass" && mass_kg(design).is_none()));
     limits.chain(design.requirements.iter().flat_map(Requirements::endurance)).collect()
 }
 
