@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use forcewright_base::maths;
 use forcewright_elements::springs::{Helix, Wanted, extension_springs};
 
 use crate::cut::{Cut, CutSide, Purpose, SIDES};
@@ -92,10 +93,10 @@ pub(super) fn wound(asked: &Asked, size: Size) -> Option<Size> {
         return Some(size);
     }
     COUNTS.iter().filter(|n| **n <= asked.most_springs).map(|n| f64::from(*n)).find_map(|count| {
-        let rate_n_per_m = size.rate_n_per_m / count;
+        let rate_n_per_m = four_digits_up(size.rate_n_per_m / count);
         let wanted = Wanted { rate_n_per_m, rest_length_m: size.rest_m, longest_m: size.most_m, initial_force_n: 0.0, grade: &asked.grade };
         let lightest = *extension_springs(&wanted).ok()?.first()?;
-        Some(Size { count, rate_n_per_m, spring_kg: lightest.mass_kg, helix: Some(lightest.helix), ..size })
+        looked_at(asked, Size { count, rate_n_per_m, spring_kg: lightest.mass_kg, helix: Some(lightest.helix), ..size })
     })
 }
 
@@ -120,10 +121,7 @@ pub(super) fn sizes(asked: &Asked) -> Vec<Size> {
                             let (start, end) = (preload * rest_m, INSIDE * (extension - 1.0) * rest_m);
                             let rate = 2.0 * work_j / (end * end - start * start);
                             if start < 0.8 * end {
-                                // Cut to four digits, upwards: the springs end a little shorter.
-                                let place = forcewright_base::maths::powf(10.0, forcewright_base::maths::log10(rate).floor() - 3.0);
-                                let rate = (rate / place).ceil() * place;
-                                let spring = [1.0, rate, rest_m, extension * rest_m, 0.0];
+                                let spring = [1.0, four_digits_up(rate), rest_m, extension * rest_m, 0.0];
                                 found.extend(braced(asked, spring, (roller_m, rounded_up(rest_m + start, 1e-4))));
                             }
                         }
@@ -133,6 +131,12 @@ pub(super) fn sizes(asked: &Asked) -> Vec<Size> {
         }
     }
     found
+}
+
+/// A rate that people can order: the springs end a little shorter.
+fn four_digits_up(rate: f64) -> f64 {
+    let place = maths::powf(10.0, maths::log10(rate).floor() - 3.0);
+    (rate / place - 1e-9).ceil() * place
 }
 
 fn rounded(value: f64, step: f64) -> f64 {
