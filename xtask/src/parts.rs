@@ -26,7 +26,7 @@ pub(crate) fn run(workspace: &Workspace, steps: &mut Steps) {
 /// Solids in a CAD kernel, force curves by finite elements: the command `validate`.
 pub(crate) fn validate(workspace: &Workspace) -> ExitCode {
     let mut steps = Steps::default();
-    if let Some((folder, samples)) = samples(workspace, &mut steps) {
+    if let (Some((folder, samples)), Some(binary)) = (samples(workspace, &mut steps), built(workspace, None, &mut steps)) {
         let (python, reason) = CAD.python(workspace, &folder, &mut steps);
         if let Some(reason) = reason {
             steps.run("solids", || Outcome::NotRun(reason));
@@ -36,7 +36,7 @@ pub(crate) fn validate(workspace: &Workspace) -> ExitCode {
             run_script(
                 &mut command,
                 &folder.join("solids.json"),
-                &json!({ "folder": samples }),
+                &json!({ "folder": samples, "binary": binary, "root": workspace.root, "projects": PROJECTS }),
                 "solids",
                 Duration::from_mins(10),
                 &mut steps,
@@ -85,5 +85,13 @@ fn samples(workspace: &Workspace, steps: &mut Steps) -> Option<(PathBuf, PathBuf
     });
     folders
 }
+
+/// Projects whose parts are read in a CAD kernel: outlines of beams and of cams.
+const PROJECTS: [&str; 4] = [
+    "examples/compliant/lan-table3.toml",
+    "examples/compliant/lan-end-effector.toml",
+    "examples/cam/no-undercut.toml",
+    "examples/cam/push-springs.toml",
+];
 
 const EXAMPLE: [&str; 6] = ["run", "--package", "forcewright-fabricate", "--example", "samples", "--"];
