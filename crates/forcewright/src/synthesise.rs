@@ -460,12 +460,12 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "E0530",
         "a synthesis lacks a requirement",
-        "A synthesis sizes designs by what they must do, what they are made of and what can be made. It needs at least\n\n    [requirements]\n    force = { nominal = \"10 N\", band = \"5 %\" }\n    travel = \"6 mm\"\n    stress = { safety_factor = 1.5 }\n    [material]\n    use = \"POM-C\"\n    [synthesise]\n    thickness_min = \"0.5 mm\"\n\nThe thinnest beam depends on machine, tool and material: ask who makes the part. `room`, `depth`, `plates` and `candidates` are optional.",
+        "A synthesis sizes designs by what they must do, what they are made of and what can be made. It needs at least\n\n    [requirements]\n    force = { nominal = \"10 N\", band = \"5 %\" }\n    travel = \"6 mm\"\n    stress = { safety_factor = 1.5 }\n    [material]\n    use = \"POM-C\"\n    [synthesise]\n    thickness_min = \"0.5 mm\"\n\nThe thinnest beam depends on machine, tool and material: ask who makes the part. `room`, `depth`, `plates`, `rows`, `series` and `candidates` are optional.",
     ),
     code(
         "E0531",
         "an envelope without a drawing",
-        "`requirements.envelope` is a box in the coordinates of a drawing. A synthesis makes the drawing: give the size of the room as `synthesise.room`, width and height of the whole mechanism, the height along the load. The files written have that room as an envelope around their drawing, so that `solve` tests it.",
+        "`requirements.envelope` is a box in the coordinates of a drawing. A synthesis makes the drawing: give the size of the room as `synthesise.room`, width and height of the whole mechanism with its pads and blocks, the height along the load. The files written have what is left of it for the beams as an envelope around their drawing, so that `solve` tests it.",
     ),
     code(
         "E0532",

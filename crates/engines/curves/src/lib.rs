@@ -10,7 +10,7 @@ mod profile;
 pub mod registration;
 pub mod smoothing;
 mod spline;
-mod vector;
+pub mod vector;
 pub mod walls;
 pub mod waviness;
 

@@ -1,6 +1,6 @@
 //! The smooth pieces that profiles consist of, all with a parameter in [0, 1]: the common ground of every algorithm here.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 use std::sync::LazyLock;
 
 use forcewright_base::{maths, quadrature::GaussLegendre, roots};
@@ -347,7 +347,8 @@ impl Piece {
             Self::Line { .. } => 1.0,
             Self::Arc { from, centre, sweep_rad, .. } => {
                 let versine = (chord_error_m / distance(*from, *centre)).min(1.0);
-                (sweep_rad.abs() / (2.0 * maths::acos(1.0 - versine)).max(1e-6)).ceil()
+                // However coarse, a circle remains a hexagon.
+                (sweep_rad.abs() / (2.0 * maths::acos(1.0 - versine)).clamp(1e-6, FRAC_PI_3)).ceil()
             }
             Self::Cubic(_) => {
                 let bend = norm(self.second(0.0)).max(norm(self.second(1.0)));

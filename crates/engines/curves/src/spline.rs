@@ -75,6 +75,41 @@ impl Spline {
         Self { control_m: self.control_m.iter().rev().copied().collect(), knots: self.knots.iter().rev().map(|knot| ends - knot).collect() }
     }
 
+    /// The parts before and after a parameter between the first and the last knot; `None` if not valid, or not between them.
+    ///
+    /// By knots inserted until the parameter is a threefold one (W. Boehm, "Inserting new knots into B-spline curves", Computer-Aided
+    /// Design 12(4), 1980): the curve stays.
+    pub fn split(&self, parameter: f64) -> Option<[Self; 2]> {
+        let count = self.control_m.len();
+        if !(self.is_valid() && self.knots[0] < parameter && parameter < self.knots[count]) {
+            return None;
+        }
+        let mut all = self.clone();
+        let below = |knots: &[f64]| knots.partition_point(|knot| *knot < parameter);
+        while all.knots.partition_point(|knot| *knot <= parameter) - below(&all.knots) < 3 {
+            all.insert(parameter);
+        }
+        let first = below(&all.knots);
+        let (mut low, mut high) = (all.knots[..first + 3].to_vec(), all.knots[first..].to_vec());
+        low.push(parameter);
+        high.insert(0, parameter);
+        let [before, after] = [&all.control_m[..first], &all.control_m[first - 1..]].map(<[[f64; 2]]>::to_vec);
+        Some([Self { control_m: before, knots: low }, Self { control_m: after, knots: high }])
+    }
+
+    /// One more knot.
+    fn insert(&mut self, parameter: f64) {
+        let span = self.knots.partition_point(|knot| *knot <= parameter) - 1;
+        let mut control_m = self.control_m[..=span - 3].to_vec();
+        for i in span - 2..=span {
+            let share = (parameter - self.knots[i]) / (self.knots[i + 3] - self.knots[i]);
+            control_m.push(mix(self.control_m[i - 1], self.control_m[i], share));
+        }
+        control_m.extend_from_slice(&self.control_m[span..]);
+        self.control_m = control_m;
+        self.knots.insert(span + 1, parameter);
+    }
+
     pub(crate) fn transformed(&self, motion: &Motion) -> Self {
         Self { control_m: self.control_m.iter().map(|point| motion.apply(*point)).collect(), knots: self.knots.clone() }
     }

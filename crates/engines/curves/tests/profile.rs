@@ -258,3 +258,39 @@ fn spline_areas_agree_with_fine_polygons() {
     assert!((fine.area_m2() - profile.area_m2()).abs() < 2e-8);
     assert!((fine.length_m() - profile.length_m()).abs() < 1e-7);
 }
+
+/// The Cox–de Boor recursion, as it is written in textbooks.
+fn textbook(spline: &Spline, t: f64) -> [f64; 2] {
+    fn basis(knots: &[f64], i: usize, degree: usize, t: f64) -> f64 {
+        if degree == 0 {
+            return f64::from(u8::from(knots[i] <= t && t < knots[i + 1]));
+        }
+        let part = |above: f64, below: f64, of: f64| if below > 0.0 { above / below * of } else { 0.0 };
+        part(t - knots[i], knots[i + degree] - knots[i], basis(knots, i, degree - 1, t))
+            + part(knots[i + degree + 1] - t, knots[i + degree + 1] - knots[i + 1], basis(knots, i + 1, degree - 1, t))
+    }
+    let weights = (0..spline.control_m.len()).map(|i| basis(&spline.knots, i, 3, t));
+    spline.control_m.iter().zip(weights).fold([0.0; 2], |sum, (p, w)| [sum[0] + w * p[0], sum[1] + w * p[1]])
+}
+
+#[test]
+fn the_parts_of_a_split_spline_are_the_spline() {
+    let spline = Spline {
+        control_m: vec![[0.0, 0.0], [1.0, 2.0], [3.0, 2.5], [5.0, -2.0], [8.0, 0.0], [9.0, 1.0]],
+        knots: vec![0.0, 0.0, 0.0, 0.0, 0.3, 0.5, 1.0, 1.0, 1.0, 1.0],
+    };
+    for t in [0.4, 0.3, 0.5, 0.999] {
+        let parts = spline.split(t).unwrap();
+        assert!(parts.iter().all(Spline::is_valid));
+        for (part, s) in [(&parts[0], 0.1), (&parts[0], t - 1e-9), (&parts[1], t), (&parts[1], 0.9995)] {
+            let (a, b) = (textbook(part, s), textbook(&spline, s));
+            assert!((a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-14, "split at {t}, point {s}");
+        }
+    }
+    assert!([0.0, 1.0, -1.0, f64::NAN].iter().all(|t| spline.split(*t).is_none()));
+}
+
+#[test]
+fn however_coarse_a_circle_is_a_hexagon() {
+    assert_eq!(Profile::circle([1.0, 2.0], 3.0).tessellate(10.0).len(), 6);
+}

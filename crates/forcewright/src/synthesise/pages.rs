@@ -28,7 +28,7 @@ impl Synthesised {
         }
         if !self.met() && self.ways.is_empty() && !self.interrupted {
             let text =
-                "no single limit is enough: loosen two of stroke, room, stress, band, depth and plates, or draw another shape".to_owned();
+                "no single limit is enough: loosen two of stroke, room, stress, band, depth and copies, or draw another shape".to_owned();
             all.push(say("What blocks", text));
         }
         all.push(say("Work", format!("{} designs were analysed in full.", self.analysed)));
@@ -81,7 +81,11 @@ impl Synthesised {
             row.push(d.file.clone());
             row
         };
-        StudyTable { caption: "Designs, the best first".to_owned(), columns, rows: self.designs.iter().enumerate().map(row).collect() }
+        StudyTable {
+            caption: "Designs, the best first. Room: beams, pads and blocks of all copies over the travel".to_owned(),
+            columns,
+            rows: self.designs.iter().enumerate().map(row).collect(),
+        }
     }
 
     /// `report.html`. `input_name` is the file as the user named it, `command` the command that repeats this run.

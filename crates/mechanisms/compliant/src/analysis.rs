@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use forcewright_base::units::Unit;
-use forcewright_beam::{Follow, Jump, NetworkError, Path, PeakStress, Point, Settings, Status, trace};
+use forcewright_beam::{Beam, Follow, Jump, NetworkError, Path, PeakStress, Point, Settings, Status, trace};
 use forcewright_contract::family::Progress;
 
 use crate::design::Design;
@@ -444,14 +444,34 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m.set("envelope_margin", m.margin.map(|e| e.margin_m));
     m.set("lateral_stiffness_min", behaviour.sway.and_then(|s| s.least_n_per_m));
     m.set("stress_max", m.stress.map(|s| s.peak.stress_pa));
+    m.set("stress_inner_face", inner_face_pa(design, behaviour, m.stress));
     if beams.clone().all(|beam| design.yield_pa(beam).is_some()) {
         m.set("safety_factor", m.loaded.and_then(|s| Some(design.yield_pa(s.beam)? / s.peak.stress_pa)).filter(|f| f.is_finite()));
     }
     m
 }
 
+/// Thickness over radius of a beam as made, at a place.
+pub(crate) fn curvature_ratio(beam: &Beam, u: f64) -> f64 {
+    beam.thickness_at(u) * beam.shape.slope_at(u).abs() / beam.shape.length_m()
+}
+
+/// The stress at the inner face of a curved bar of rectangular section over that of a straight one, to first order in thickness over
+/// radius (Winkler; Timoshenko, Strength of Materials, Part II).
+pub(crate) fn inner_face_factor(beam: &Beam, u: f64) -> f64 {
+    1.0 + curvature_ratio(beam, u) / 3.0
+}
+
+/// Largest stress with that factor, Pa: of every beam at every state where its stress is largest, and of the largest of all.
+fn inner_face_pa(design: &Design, behaviour: &Behaviour, largest: Option<LargestStress>) -> Option<f64> {
+    let of = |index: usize, peak: PeakStress| Some(inner_face_factor(design.network.beams.get(index)?, peak.u) * peak.stress_pa);
+    let states = behaviour.path.points.iter().flat_map(|p| p.beams.iter().enumerate());
+    let all = states.filter_map(|(index, state)| of(index, state.peak_stress()));
+    all.chain(largest.and_then(|s| of(s.beam, s.peak))).reduce(f64::max)
+}
+
 fn length_ratio(design: &Design) -> Option<f64> {
-    let ratio = |b: &forcewright_beam::Beam| {
+    let ratio = |b: &Beam| {
         let [x, y] = b.shape.chord_m();
         b.shape.length_m() / forcewright_base::maths::hypot(x, y)
     };
@@ -459,7 +479,7 @@ fn length_ratio(design: &Design) -> Option<f64> {
 }
 
 /// Volume of a beam, m³: the thickness is linear between places.
-pub(crate) fn volume_m3(beam: &forcewright_beam::Beam) -> f64 {
+pub(crate) fn volume_m3(beam: &Beam) -> f64 {
     if beam.profile.is_empty() {
         return beam.section.area_m2() * beam.shape.length_m();
     }

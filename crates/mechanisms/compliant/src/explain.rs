@@ -146,7 +146,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "W0502",
         "a beam is strongly curved",
-        "In a curved beam the stress at the inner face is larger than in a straight one, by about a third of thickness over radius. The computed stress is that of a straight beam.",
+        "In a curved beam the stress at the inner face is larger than in a straight one, by about a third of thickness over radius. The computed stress is that of a straight beam; the metric `stress_inner_face` has the correction, and `requirements.limits.stress_inner_face` limits it. Designs of `forcewright synthesise` keep such a limit.",
     ),
     code(
         "W0503",

@@ -63,4 +63,10 @@ pub const METRICS: &[MetricInfo] = &[
     metric("contact_force_mean", Dimension::Force, false, "Mean contact force along the guide, over the way in contact with the surface."),
     metric("contact_force_spread", Dimension::Ratio, true, "(max − min)/(max + min) of the contact force along the guide."),
     metric("transverse_force_max", Dimension::Force, false, "Largest force with which the stage moves the tip along the surface."),
+    metric(
+        "stress_inner_face",
+        Dimension::Stress,
+        false,
+        "Largest stress with what the curvature of its beam adds at the inner face, by the factor 1 + thickness/(3 radius), the whole travel.",
+    ),
 ];

@@ -26,7 +26,7 @@ const PROBES: usize = 400;
 const AXES: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
 /// How the plate is made, SI.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Making {
     /// Diameter of the cutter, m.
     pub cutter_m: Option<f64>,
@@ -46,6 +46,11 @@ impl Making {
     /// Whether the file says how large pads, holes or fillets are.
     pub(crate) fn is_drawn(&self) -> bool {
         self.pad_m.is_some() || self.hole_m.is_some() || self.fillet_m.is_some()
+    }
+
+    /// Size of a pad at the end of a beam of a thickness, along its edge and away from the beam, m.
+    pub(crate) fn pad_size_m(&self, thickness_m: f64) -> [f64; 2] {
+        self.pad_m.unwrap_or([PAD_THICKNESSES * thickness_m + 2.0 * self.hole_m.unwrap_or(0.0); 2])
     }
 
     /// Radius of the fillets, m: as given, or else that of the cutter, or half a thickness.
@@ -122,6 +127,27 @@ impl Frame {
         let ([x0, y0], [x1, y1]) = (self.low, self.high);
         vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
     }
+}
+
+/// The axis along which a pad lies behind a drawn node, away from the beams that end there, and the thickness of the thickest of them, m.
+/// `None` where no beam ends.
+pub(crate) fn way_out(design: &Design, node: usize, at_m: [f64; 2]) -> Option<([f64; 2], f64)> {
+    let mut away = [0.0; 2];
+    let mut thickest_m = 0.0_f64;
+    for beam in &design.network.beams {
+        for (end, sign) in [(0.0, -1.0), (1.0, 1.0)] {
+            let (joint, place) = if sign < 0.0 { (beam.start, design.start_m(beam)) } else { (beam.end, design.end_m(beam)) };
+            if joint == node && maths::hypot(place[0] - at_m[0], place[1] - at_m[1]) <= 1e-9 * beam.shape.length_m() {
+                let (sin, cos) = maths::sin_cos(beam.shape.angle_at(end));
+                away = [away[0] + sign * cos, away[1] + sign * sin];
+                thickest_m = thickest_m.max(beam.thickness_at(end));
+            }
+        }
+    }
+    // The first of equals.
+    let dot = |a: &[f64; 2]| a[0] * away[0] + a[1] * away[1];
+    let out = AXES.into_iter().reduce(|best, next| if dot(&next) > dot(&best) + 1e-9 { next } else { best })?;
+    (thickest_m > 0.0).then_some((out, thickest_m))
 }
 
 impl<'a> Drawing<'a> {
@@ -228,28 +254,8 @@ impl<'a> Drawing<'a> {
     /// The pad at a drawn node: the beams that end there leave its edge, which passes through the node along an axis.
     /// `None` where no beam ends.
     fn pad(&self, node: usize, at_m: [f64; 2]) -> Option<Frame> {
-        let design = self.design;
-        let mut away = [0.0; 2];
-        let mut thickest_m = 0.0_f64;
-        for beam in &design.network.beams {
-            for (end, sign) in [(0.0, -1.0), (1.0, 1.0)] {
-                let (joint, place) = if sign < 0.0 { (beam.start, design.start_m(beam)) } else { (beam.end, design.end_m(beam)) };
-                if joint == node && maths::hypot(place[0] - at_m[0], place[1] - at_m[1]) <= 1e-9 * beam.shape.length_m() {
-                    let (sin, cos) = maths::sin_cos(beam.shape.angle_at(end));
-                    away = [away[0] + sign * cos, away[1] + sign * sin];
-                    thickest_m = thickest_m.max(beam.thickness_at(end));
-                }
-            }
-        }
-        if thickest_m <= 0.0 {
-            return None;
-        }
-        let hole_m = design.making.hole_m.unwrap_or(0.0);
-        let default_m = PAD_THICKNESSES * thickest_m + 2.0 * hole_m;
-        let [along_m, deep_m] = design.making.pad_m.unwrap_or([default_m; 2]);
-        // The first of equals.
-        let dot = |a: &[f64; 2]| a[0] * away[0] + a[1] * away[1];
-        let out = AXES.into_iter().reduce(|best, next| if dot(&next) > dot(&best) + 1e-9 { next } else { best }).unwrap_or(AXES[0]);
+        let (out, thickest_m) = way_out(self.design, node, at_m)?;
+        let [along_m, deep_m] = self.design.making.pad_size_m(thickest_m);
         let ends = [0.0, deep_m].map(|d| [at_m[0] + d * out[0], at_m[1] + d * out[1]]);
         let across = [0.5 * along_m * out[1].abs(), 0.5 * along_m * out[0].abs()];
         Some(Frame {

@@ -6,7 +6,7 @@ use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_beam::{Beam, Drive, Joints, Theory};
 use forcewright_model::{Citation, Statement, Warning};
 
-use crate::analysis::{Behaviour, Measured};
+use crate::analysis::{Behaviour, Measured, curvature_ratio, inner_face_factor};
 use crate::bodies::Body;
 use crate::crossing::first_crossing;
 use crate::design::Design;
@@ -214,11 +214,6 @@ pub(crate) fn sources(design: &Design) -> Vec<Citation> {
     all
 }
 
-/// Thickness over radius of a beam as made, at a place.
-fn curvature_ratio(beam: &Beam, u: f64) -> f64 {
-    beam.thickness_at(u) * beam.shape.slope_at(u).abs() / beam.shape.length_m()
-}
-
 /// Length over thickness, where that varies over its mean.
 fn slenderness(beam: &Beam) -> f64 {
     let mean_m: f64 = beam.profile.windows(2).map(|p| (p[1][0] - p[0][0]) * f64::midpoint(p[0][1], p[1][1])).sum();
@@ -226,9 +221,6 @@ fn slenderness(beam: &Beam) -> f64 {
 }
 
 /// One warning about all strongly curved beams, with what it means for the largest stress.
-///
-/// In a curved bar of rectangular section the stress at the inner face exceeds that of a straight one by the factor 1 + w/(3R), to first
-/// order in w/R (Winkler; Timoshenko, Strength of Materials, Part II).
 fn curved_beams(design: &Design, measured: &Measured) -> Option<Warning> {
     let name = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
     let steepest = |b: &Beam| (0..=64).map(|i| curvature_ratio(b, f64::from(i) / 64.0)).fold(0.0, f64::max);
@@ -236,7 +228,7 @@ fn curved_beams(design: &Design, measured: &Measured) -> Option<Warning> {
     let largest = ratios.iter().fold(0.0_f64, |m, (_, r)| m.max(*r));
     let beams = ratios.iter().map(|(i, _)| format!("`{}`", name(*i))).collect::<Vec<_>>().join(", ");
     let at_peak = measured.stress.and_then(|s| {
-        let factor = 1.0 + curvature_ratio(design.network.beams.get(s.beam)?, s.peak.u) / 3.0;
+        let factor = inner_face_factor(design.network.beams.get(s.beam)?, s.peak.u);
         let corrected = factor * s.peak.stress_pa;
         let verdict = match design.allowable_pa(s.beam) {
             Some(allowed) if s.peak.stress_pa <= allowed && corrected > allowed => ", which is more than allowed",

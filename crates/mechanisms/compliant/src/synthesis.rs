@@ -2,6 +2,7 @@
 
 mod catalogue;
 mod limits;
+mod room;
 mod section;
 mod sizing;
 mod write;
@@ -12,13 +13,14 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::maths;
 use forcewright_base::units::{Dimension, Quantity, Unit};
 use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser};
-use forcewright_model::{Outcome, ParameterRow, StatusKind};
+use forcewright_model::{CheckState, Outcome, ParameterRow, StatusKind};
 
 use crate::design::{Design, StressLimit, si};
 use crate::metrics::CompliantMetrics;
 use crate::spec::Spec;
 use limits::Knob;
-use sizing::{Asked, Size, Windows, sizes};
+use room::Room;
+use sizing::{Asked, Size, Windows, sizes, sizes_of_more};
 
 /// A cantilever of no particular size, moved as far as the language allows.
 pub(crate) const SKELETON: Skeleton = Skeleton {
@@ -113,7 +115,12 @@ fn asked(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<
         let help = "give the size of the room instead: `room = [\"80 mm\", \"60 mm\"]` in `[synthesise]`";
         diagnostics.push(Diagnostic::error("E0531", envelope.span, message).label("around what?").help(help));
     }
-    let limit = |name: &str| requirements?.limits.iter().find(|l| l.name::<CompliantMetrics>() == name)?.min;
+    let limit = |name: &str| {
+        let found = requirements?.limits.iter().find(|l| l.name::<CompliantMetrics>() == name)?;
+        Some([found.min, found.max])
+    };
+    // What a file says of the inner face itself may be more severe than what it says of all stresses.
+    let inner_pa = limit("stress_inner_face").and_then(|[_, max]| max).unwrap_or(f64::INFINITY);
     let depth = &spec.synthesise.depth;
     let [depth_min_m, depth_max_m] = [&depth.min, &depth.max].map(|side| si(side.as_ref()));
     if let (Some(min), Some(max), Some(typed)) = (depth_min_m, depth_max_m, &depth.max)
@@ -133,14 +140,18 @@ fn asked(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<
         nominal_n,
         stroke_m: requirements.travel_m?,
         young_pa,
-        strain: allowed_pa? / young_pa,
+        strain: allowed_pa?.min(inner_pa) / young_pa,
+        stress_pa: requirements.stress.and(allowed_pa).map(|allowed| allowed.min(inner_pa)),
         stiffness_n_per_m: [requirements.stiffness_min, requirements.stiffness_max.unwrap_or(f64::INFINITY)],
         room_m: spec.synthesise.room.as_ref().map_or([f64::INFINITY; 2], |room| [room.value[0].si, room.value[1].si]),
         depth_min_m,
         depth_max_m: depth_max_m.unwrap_or_else(|| DEPTH_MAX_M.max(depth_min_m.unwrap_or(0.0))),
         thickness_min_m: thickness_min_m?,
         plates: spec.synthesise.plates.as_ref().map_or(1, |p| p.value),
-        gap_min_m: limit("clearance_min").unwrap_or(0.0),
+        rows: spec.synthesise.rows.as_ref().map_or(1, |r| r.value),
+        layers: spec.synthesise.series.as_ref().map_or(1, |l| l.value),
+        making: design.making,
+        gap_min_m: limit("clearance_min").and_then(|[min, _]| min).unwrap_or(0.0),
     })
 }
 
@@ -150,9 +161,9 @@ fn extent(size: &Size) -> [f64; 2] {
     [size.cost_m3 / depth_m, depth_m]
 }
 
-/// Whether two sizes take nearly the same area and depth.
+/// Whether two sizes take nearly the same area and depth, with as many copies.
 fn near(a: &Size, b: &Size) -> bool {
-    extent(a).iter().zip(extent(b)).all(|(a, b)| (a / b - 1.0).abs() < DIFFERENT)
+    a.copies == b.copies && extent(a).iter().zip(extent(b)).all(|(a, b)| (a / b - 1.0).abs() < DIFFERENT)
 }
 
 /// Of each shape the size that costs least, then those of least area and of least depth where they are different, the best first.
@@ -169,7 +180,8 @@ fn picked(found: &[Size]) -> Vec<Size> {
             }
         }
     }
-    let score = |s: &Size| s.cost_m3 * (1.0 + PART_COST * catalogue::solved(s.shape).map_or(0, |c| c.beams) as f64);
+    let parts = |s: &Size| catalogue::solved(s.shape).map_or(0, |c| c.beams) as f64 * f64::from(s.copies.count());
+    let score = |s: &Size| s.cost_m3 * (1.0 + PART_COST * parts(s));
     for round in &mut rounds {
         round.sort_by(|a, b| score(a).total_cmp(&score(b)));
     }
@@ -181,18 +193,20 @@ impl Synthesis {
         (TRIED_PER_FILE * self.wanted).max(FEWEST_TRIED)
     }
 
-    fn written(&self, found: &[Size]) -> Vec<Proposal> {
+    /// What of these is analysed.
+    fn written(&self, found: &[Size], most: usize) -> Vec<Proposal> {
         let mut sizes = picked(found);
-        sizes.truncate(self.tried());
+        sizes.truncate(most);
         sizes.iter().filter_map(|size| write::proposal(&self.asked, size, &self.length, 0.0)).collect()
     }
 
-    /// The size that the full analysis suggests: as large as the stroke needs, as thin as the stress needs, as deep as the force needs.
+    /// The size that the full analysis suggests: as large as the stroke needs, as thin as the stress at the inner face needs, as deep as the
+    /// force needs.
     fn resized(&self, size: &Size, outcome: &Outcome) -> Option<Size> {
         let metric = |name: &str| outcome.metric(name).map(|m| m.value);
         let stroke_m = metric("flat_end")? - metric("flat_start")?;
         let larger = (self.asked.stroke_m * (1.0 + BEYOND) / stroke_m).max(1.0);
-        let thinner = (self.allowed_pa * (1.0 - BEYOND) / metric("stress_max")?).min(1.0);
+        let thinner = (self.allowed_pa * (1.0 - BEYOND) / metric("stress_inner_face")?).min(1.0);
         if larger > LARGEST_STEP || thinner < 1.0 / LARGEST_STEP {
             return None;
         }
@@ -207,10 +221,16 @@ impl Synthesis {
             depth_m *= f64::from(plates) / f64::from(plates + 1);
             plates += 1;
         }
-        let fits = thickness_m >= self.asked.thickness_min_m && depth_m <= self.asked.depth_max_m;
         let near = (larger - 1.0).max(1.0 - thinner).max((level - 1.0).abs()) <= LEVEL && outcome.requirements_met();
-        let cost_m3 = size.cost_m3 * larger * larger * depth_m * f64::from(plates) / (size.depth_m * f64::from(size.plates));
-        (fits && !near).then_some(Size { scale: size.scale * larger, thickness_m, depth_m, plates, cost_m3, ..*size })
+        let next = Size { scale: size.scale * larger, thickness_m, depth_m, plates, ..*size };
+        let shape = catalogue::solved(size.shape)?;
+        let room = Room::of(&self.asked, shape, shape.stops.get(size.stop)?, size.copies);
+        let [width_m, height_m] = room.extent_m(next.scale, thickness_m);
+        let inside = width_m <= self.asked.room_m[0] && height_m <= self.asked.room_m[1];
+        // The stress of a shape that keeps its slimness does not depend on its size.
+        let can = shape.slimness_m.is_none() || thinner >= 1.0;
+        let fits = inside && can && thickness_m >= self.asked.thickness_min_m && depth_m <= self.asked.depth_max_m;
+        (fits && !near).then(|| Size { cost_m3: next.cost_m3(&room), ..next })
     }
 }
 
@@ -220,7 +240,9 @@ impl Synthesiser for Synthesis {
     }
 
     fn proposals(&self) -> Vec<Proposal> {
-        self.written(&sizes(&self.asked, &self.windows))
+        // What the closed form does not see may ask for more copies than it does.
+        let [fewest, more] = [sizes, sizes_of_more].map(|of| of(&self.asked, &self.windows));
+        [self.written(&fewest, self.tried()), self.written(&more, self.tried() / 2)].concat()
     }
 
     fn judge(&self, proposal: &Proposal, outcome: &Outcome) -> Judgement {
@@ -234,6 +256,10 @@ impl Synthesiser for Synthesis {
         if clearance <= 0.0 {
             return Judgement::Reject("surfaces of beams touch".to_owned());
         }
+        // Also where the file says nothing of pads: the room that is told is with them.
+        if let Some(pads) = outcome.checks.iter().find(|c| c.code == "COMP013" && c.state == CheckState::Missed) {
+            return Judgement::Reject(format!("something runs into a pad: {}", pads.title));
+        }
         let Some((size, round)) = write::read(&proposal.state) else { return Judgement::Keep };
         let next = self.resized(&size, outcome).filter(|_| round < ROUNDS);
         let next = next.and_then(|size| write::proposal(&self.asked, &size, &self.length, round + 1.0));
@@ -246,7 +272,7 @@ impl Synthesiser for Synthesis {
             Quantity::parse(&row.value, Dimension::Length).ok().map(|q| q.si)
         };
         let found = ["design.thickness", "design.depth"].map(value);
-        write::searched(proposal, found, &self.length).unwrap_or_else(|| proposal.clone())
+        write::searched(&self.asked, proposal, found, &self.length).unwrap_or_else(|| proposal.clone())
     }
 
     fn alike(&self, a: &Proposal, b: &Proposal) -> bool {

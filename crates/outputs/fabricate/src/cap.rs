@@ -1,11 +1,11 @@
 //! The plane of a part in triangles, and what only they show: boundaries that meet or lie where they cannot.
 
+use forcewright_curves::vector::{cross, sub};
 use spade::handles::{FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
 
 use crate::error::{Boundary, Error, Place, Problem};
-use crate::geometry::{Point, cross, sub};
-use crate::shape::Shape;
+use crate::shape::{Point, Shape};
 
 /// A boundary by its corners, material to the left.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,7 @@ use std::fmt::{Display, Write as _};
 
 use forcewright_model::Part;
 
-use crate::geometry::{Bulge, Point};
-use crate::shape::{Loop, Shape};
+use crate::shape::{Bulge, Loop, Point, Shape};
 use crate::text::{length, ratio, remarks};
 
 /// Layers with their colours by their number: white (black on paper), red, blue, green.

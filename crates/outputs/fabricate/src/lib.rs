@@ -23,7 +23,6 @@ mod dxf;
 mod elements;
 mod error;
 mod format;
-mod geometry;
 mod inp;
 mod mesh;
 mod shape;

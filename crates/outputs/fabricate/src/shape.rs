@@ -1,11 +1,17 @@
 //! A part that was checked, in millimetres.
 
 use forcewright_base::maths;
-use forcewright_curves::{Profile, Segment};
+use forcewright_curves::vector::{cross, dot, norm, scale, sub};
+use forcewright_curves::{Profile, Segment, Spline};
 use forcewright_model::Part;
 
 use crate::error::{Boundary, Error, Place, Problem};
-use crate::geometry::{self, Bulge, Point, Spline, cross, norm, sub};
+
+/// A point, mm.
+pub(crate) type Point = [f64; 2];
+
+/// A cubic by its Bézier points, mm.
+pub(crate) type Bezier = [Point; 4];
 
 /// Files are in millimetres.
 pub(crate) const MM_PER_M: f64 = 1e3;
@@ -32,8 +38,15 @@ pub(crate) enum Curve {
         radius: f64,
         sweep_rad: f64,
     },
-    /// Without kinks.
+    /// Without kinks, in metres.
     Spline(Spline),
+}
+
+/// An arc by where it ends and its bulge, the tangent of a quarter of its angle; 0 is straight, positive counterclockwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bulge {
+    pub(crate) to: Point,
+    pub(crate) bulge: f64,
 }
 
 /// A closed boundary of two edges or more, with material to its left.
@@ -128,8 +141,7 @@ impl Loop {
         // A closed spline alone is halved: a file wants edges with two ends.
         if let [Edge { curve: Curve::Spline(spline), .. }] = edges.as_slice() {
             let middle = 0.5 * (spline.knots[0] + spline.knots[spline.knots.len() - 1]);
-            let (low, high) = spline.clone().split(middle);
-            edges = vec![spline_edge(low), spline_edge(high)];
+            edges = spline.split(middle).ok_or_else(|| whole(Problem::SplineKnots))?.map(spline_edge).to_vec();
         }
         if edges.len() < 2 {
             return Err(whole(Problem::TooFewSegments));
@@ -138,7 +150,8 @@ impl Loop {
             last.end_at(start);
         }
         let made = Self { boundary, edges };
-        let (area, length) = made.area_and_length();
+        let made_m = made.profile();
+        let (area, length) = (made_m.area_m2() * MM_PER_M * MM_PER_M, made_m.length_m() * MM_PER_M);
         if area.abs() <= GAP_MM * length {
             return Err(whole(Problem::NoArea));
         }
@@ -148,40 +161,14 @@ impl Loop {
         Ok(made)
     }
 
-    /// Enclosed area, mm², positive when passed counterclockwise, and a bound of the length, mm.
-    fn area_and_length(&self) -> (f64, f64) {
-        let origin = self.edges[0].from;
-        let (mut twice, mut length) = (0.0, 0.0);
-        for edge in &self.edges {
-            let chord = cross(sub(edge.from, origin), sub(edge.to, origin));
-            match &edge.curve {
-                Curve::Line => {
-                    twice += chord;
-                    length += norm(sub(edge.to, edge.from));
-                }
-                Curve::Arc { radius, sweep_rad, .. } => {
-                    twice += chord + radius * radius * (sweep_rad - maths::sin(*sweep_rad));
-                    length += radius * sweep_rad.abs();
-                }
-                Curve::Spline(spline) => {
-                    for piece in spline.beziers() {
-                        twice += geometry::twice_swept(&piece.map(|point| sub(point, origin)));
-                        length += piece.windows(2).map(|leg| norm(sub(leg[1], leg[0]))).sum::<f64>();
-                    }
-                }
-            }
-        }
-        (0.5 * twice, length)
+    /// The same in metres.
+    fn profile(&self) -> Profile {
+        Profile { start_m: metres(self.edges[0].from), segments: self.edges.iter().map(Edge::segment).collect() }
     }
 
     /// Corners of a polygon within `chord` mm of the boundary, all of them on it; the first edge begins at the first corner.
     pub(crate) fn points(&self, chord: f64) -> Vec<Point> {
-        let mut points = Vec::new();
-        for edge in &self.edges {
-            edge.append_points(chord, &mut points);
-        }
-        points.rotate_right(1);
-        points
+        self.profile().tessellate(chord / MM_PER_M).into_iter().map(millimetres).collect()
     }
 
     /// Arcs within `chord` mm of splines, and everything else as it is, from the begin of the first edge.
@@ -196,23 +183,80 @@ impl Loop {
                         bulges.push(Bulge { to, bulge: maths::tan(0.25 * sweep) });
                     }
                 }
-                Curve::Spline(spline) => spline.beziers().iter().for_each(|piece| geometry::arcs_of_cubic(piece, chord, &mut bulges)),
+                Curve::Spline(spline) => {
+                    spline.beziers_m().iter().for_each(|cubic| arcs_of_cubic(cubic, chord, &mut bulges));
+                    if let Some(last) = bulges.last_mut() {
+                        last.to = edge.to;
+                    }
+                }
             }
         }
         bulges
     }
 }
 
-impl Edge {
-    fn append_points(&self, chord: f64, points: &mut Vec<Point>) {
-        match &self.curve {
-            Curve::Line => points.push(self.to),
-            Curve::Arc { radius, sweep_rad, .. } => {
-                let count = geometry::chord_count(*radius, *sweep_rad, chord);
-                points.extend(self.arc_ends(count).into_iter().map(|(to, _)| to));
+fn metres(point: Point) -> [f64; 2] {
+    point.map(|coordinate| coordinate / MM_PER_M)
+}
+
+fn millimetres(point_m: [f64; 2]) -> Point {
+    scale(point_m, MM_PER_M)
+}
+
+/// Appends arcs within `chord` mm of a cubic in metres, or chords where it has no direction to keep, as in a cusp.
+fn arcs_of_cubic(cubic_m: &[[f64; 2]; 4], chord: f64, out: &mut Vec<Bulge>) {
+    let cubic = Spline { control_m: cubic_m.to_vec(), knots: vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0] };
+    let chord_m = chord / MM_PER_M;
+    // The distance is measured at places, and a tenth is left for what is between them.
+    let Ok(arcs) = cubic.to_arcs(0.9 * chord_m) else {
+        let chords = Profile { start_m: cubic_m[0], segments: vec![Segment::Spline(cubic)] }.tessellate(chord_m);
+        let ends = chords.into_iter().skip(1).chain([cubic_m[3]]);
+        return out.extend(ends.map(|to_m| Bulge { to: millimetres(to_m), bulge: 0.0 }));
+    };
+    let mut from_m = cubic_m[0];
+    for segment in &arcs.segments {
+        let to_m = segment.end_m();
+        let bulge = match segment {
+            Segment::Arc { centre_m, counterclockwise, .. } => {
+                maths::tan(0.25 * sweep_rad(sub(from_m, *centre_m), sub(to_m, *centre_m), *counterclockwise))
             }
-            Curve::Spline(spline) => spline.beziers().iter().for_each(|piece| geometry::chords_of_cubic(piece, chord, points)),
+            _ => 0.0,
+        };
+        out.push(Bulge { to: millimetres(to_m), bulge });
+        from_m = to_m;
+    }
+}
+
+/// The angle from one spoke of a circle to another in a direction, positive counterclockwise, rad.
+fn sweep_rad(from: [f64; 2], to: [f64; 2], counterclockwise: bool) -> f64 {
+    let turn = maths::atan2(cross(from, to), dot(from, to));
+    let full = std::f64::consts::TAU;
+    match counterclockwise {
+        true if turn < 0.0 => turn + full,
+        false if turn > 0.0 => turn - full,
+        _ => turn,
+    }
+}
+
+impl Edge {
+    /// The same in metres, from where the one before ends.
+    fn segment(&self) -> Segment {
+        let to_m = metres(self.to);
+        match &self.curve {
+            Curve::Line => Segment::Line { to_m },
+            Curve::Arc { centre, sweep_rad, .. } => Segment::Arc { to_m, centre_m: metres(*centre), counterclockwise: *sweep_rad > 0.0 },
+            Curve::Spline(spline) => Segment::Spline(spline.clone()),
         }
+    }
+
+    /// The cubics of a spline by their Bézier points, mm, from the begin of the edge to its end; none of other curves.
+    pub(crate) fn beziers(&self) -> Vec<Bezier> {
+        let Curve::Spline(spline) = &self.curve else { return Vec::new() };
+        let mut cubics: Vec<Bezier> = spline.beziers_m().into_iter().map(|cubic| cubic.map(millimetres)).collect();
+        if let Some(last) = cubics.last_mut() {
+            last[3] = self.to;
+        }
+        cubics
     }
 
     /// The ends of equal parts of an arc, and the angle that each sweeps; none for other curves.
@@ -231,9 +275,9 @@ impl Edge {
     fn end_at(&mut self, to: Point) {
         self.to = to;
         if let Curve::Spline(spline) = &mut self.curve
-            && let Some(last) = spline.control.last_mut()
+            && let Some(last) = spline.control_m.last_mut()
         {
-            *last = to;
+            *last = metres(to);
         }
     }
 }
@@ -276,13 +320,7 @@ fn arc_edge(from: Point, to: Point, centre_m: Point, counterclockwise: bool) -> 
     if (first - last).abs() > GAP_MM + 1e-14 * norm(centre) {
         return Err(Problem::NotCircular { difference_m: (first - last).abs() / MM_PER_M });
     }
-    let turn = maths::atan2(cross(begin, end), geometry::dot(begin, end));
-    let full = std::f64::consts::TAU;
-    let sweep_rad = match counterclockwise {
-        true if turn < 0.0 => turn + full,
-        false if turn > 0.0 => turn - full,
-        _ => turn,
-    };
+    let sweep_rad = sweep_rad(begin, end, counterclockwise);
     let radius = 0.5 * (first + last);
     if radius * sweep_rad.abs() > 10.0 * FAR_MM {
         return Err(Problem::TooFar);
@@ -290,7 +328,7 @@ fn arc_edge(from: Point, to: Point, centre_m: Point, counterclockwise: bool) -> 
     Ok(vec![Edge { from, to, curve: Curve::Arc { centre, radius, sweep_rad } }])
 }
 
-fn spline_edges(spline: &forcewright_curves::Spline, from: Point) -> Result<Vec<Edge>, Problem> {
+fn spline_edges(spline: &Spline, from: Point) -> Result<Vec<Edge>, Problem> {
     let (count, knots) = (spline.control_m.len(), &spline.knots);
     if count < 4 || knots.len() != count + 4 {
         return Err(Problem::SplineCounts { control: count, knots: knots.len() });
@@ -308,27 +346,30 @@ fn spline_edges(spline: &forcewright_curves::Spline, from: Point) -> Result<Vec<
     if !(is_clamped && is_ascending && is_whole) {
         return Err(Problem::SplineKnots);
     }
-    let mut control = spline.control_m.iter().map(|&point| placed(point, FAR_MM)).collect::<Result<Vec<_>, _>>()?;
+    let control = spline.control_m.iter().map(|&point| placed(point, FAR_MM)).collect::<Result<Vec<_>, _>>()?;
     let gap = norm(sub(control[0], from));
     if gap > GAP_MM {
         return Err(Problem::Apart { gap_m: gap / MM_PER_M });
     }
-    control[0] = from;
     if control.iter().all(|&point| norm(sub(point, from)) <= GAP_MM) {
         return Err(Problem::NoLength);
     }
     let mut edges = Vec::new();
-    let mut rest = Spline { control, knots };
-    while let Some(kink) = (4..rest.control.len().saturating_sub(2)).find(|&k| rest.knots[k] >= rest.knots[k + 2]) {
-        let t = rest.knots[kink];
-        let (low, high) = rest.split(t);
+    let mut rest = Spline { control_m: spline.control_m.clone(), knots };
+    rest.control_m[0] = metres(from);
+    while let Some(kink) = (4..rest.control_m.len().saturating_sub(2)).find(|&k| rest.knots[k] >= rest.knots[k + 2]) {
+        let [low, high] = rest.split(rest.knots[kink]).ok_or(Problem::SplineKnots)?;
         edges.push(spline_edge(low));
         rest = high;
     }
     edges.push(spline_edge(rest));
+    if let Some(first) = edges.first_mut() {
+        first.from = from;
+    }
     Ok(edges)
 }
 
 fn spline_edge(spline: Spline) -> Edge {
-    Edge { from: spline.control[0], to: spline.control[spline.control.len() - 1], curve: Curve::Spline(spline) }
+    let end = |point_m: Option<&[f64; 2]>| point_m.copied().map_or([f64::NAN; 2], millimetres);
+    Edge { from: end(spline.control_m.first()), to: end(spline.control_m.last()), curve: Curve::Spline(spline) }
 }

@@ -8,10 +8,11 @@
 
 use std::fmt::{Display, Write as _};
 
+use forcewright_curves::Spline;
+use forcewright_curves::vector::{norm, sub};
 use forcewright_model::Part;
 
-use crate::geometry::{Point, Spline, norm, sub};
-use crate::shape::{Curve, Edge, Loop, Shape};
+use crate::shape::{Curve, Edge, Loop, MM_PER_M, Point, Shape};
 use crate::text::{length, ratio};
 
 pub(crate) fn write(part: &Part, shape: &Shape) -> String {
@@ -184,7 +185,8 @@ impl Step {
     }
 
     fn spline(&mut self, spline: &Spline, z: f64) -> Entity {
-        let control: Vec<Entity> = spline.control.iter().map(|point| self.point(&[point[0], point[1], z])).collect();
+        let control: Vec<Entity> =
+            spline.control_m.iter().map(|point| self.point(&[point[0] * MM_PER_M, point[1] * MM_PER_M, z])).collect();
         let (mut knots, mut counts): (Vec<f64>, Vec<usize>) = (Vec::new(), Vec::new());
         for &knot in &spline.knots {
             match counts.last_mut() {

@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 
 use forcewright_model::Part;
 
-use crate::geometry::Point;
-use crate::shape::{Curve, Edge, Loop, Shape};
+use crate::shape::{Curve, Edge, Loop, Point, Shape};
 use crate::text::{length, remarks, xml};
 
 /// Room around the part, mm.
@@ -66,8 +65,8 @@ fn add_edge(edge: &Edge, out: &mut String) {
                 let _ = write!(out, "A{r} {r} 0 0 {flag} {x} {y}");
             }
         }
-        Curve::Spline(spline) => {
-            for piece in spline.beziers() {
+        Curve::Spline(_) => {
+            for piece in edge.beziers() {
                 let [_, p, q, to] = piece.map(|point| coordinates(point).join(" "));
                 let _ = write!(out, "C{p} {q} {to}");
             }

@@ -5,7 +5,7 @@ use forcewright_base::units::{Unit, format_number, format_si};
 use forcewright_contract::synthesis::Relaxation;
 
 use super::Synthesis;
-use super::section::MOST_PLATES;
+use super::section::{MOST_LAYERS, MOST_PLATES, MOST_ROWS};
 use super::sizing::{Asked, Windows, sizes};
 use crate::design::StressLimit;
 
@@ -30,6 +30,10 @@ pub(super) enum Knob {
     DepthMin,
     /// More plates.
     Plates,
+    /// More rows.
+    Rows,
+    /// More layers in series.
+    Layers,
     /// Thinner beams.
     Thickness,
     /// A least stiffness below zero.
@@ -50,7 +54,7 @@ const DIGITS: i32 = 3;
 
 impl Knob {
     /// All, in the order in which they are told.
-    pub(super) const ALL: [Self; 11] = [
+    pub(super) const ALL: [Self; 13] = [
         Self::Travel,
         Self::Room,
         Self::Stress,
@@ -60,6 +64,8 @@ impl Knob {
         Self::DepthMax,
         Self::DepthMin,
         Self::Plates,
+        Self::Rows,
+        Self::Layers,
         Self::Thickness,
         Self::Slope,
     ];
@@ -79,19 +85,17 @@ impl Synthesis {
                     StressLimit::SafetyFactor(_) => self.yield_pa?,
                     StressLimit::Stress(_) => self.yield_pa.unwrap_or(f64::INFINITY),
                 };
-                let strain = asked.strain * factor;
-                (strain * asked.young_pa <= most * (1.0 + NEAR)).then_some(Asked { strain, ..asked })?
+                let (strain, stress_pa) = (asked.strain * factor, asked.stress_pa.map(|s| s * factor));
+                (strain * asked.young_pa <= most * (1.0 + NEAR)).then_some(Asked { strain, stress_pa, ..asked })?
             }
             Knob::Band => (asked.band * factor <= WIDEST).then_some(Asked { band: asked.band * factor, ..asked })?,
             Knob::LessForce => Asked { nominal_n: Some(asked.nominal_n? / factor), ..asked },
             Knob::MoreForce => Asked { nominal_n: Some(asked.nominal_n? * factor), ..asked },
             Knob::DepthMax => Asked { depth_max_m: asked.depth_max_m * factor, ..asked },
             Knob::DepthMin => Asked { depth_min_m: Some(asked.depth_min_m? / factor), ..asked },
-            Knob::Plates => {
-                let plates = (f64::from(asked.plates) * factor).ceil();
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most MOST_PLATES")]
-                (plates <= f64::from(MOST_PLATES)).then_some(Asked { plates: plates as u32, ..asked })?
-            }
+            Knob::Plates => Asked { plates: more(asked.plates, factor, MOST_PLATES)?, ..asked },
+            Knob::Rows => Asked { rows: more(asked.rows, factor, MOST_ROWS)?, ..asked },
+            Knob::Layers => Asked { layers: more(asked.layers, factor, MOST_LAYERS)?, ..asked },
             Knob::Thickness => Asked { thickness_min_m: asked.thickness_min_m / factor, ..asked },
             Knob::Slope => {
                 // In parts of level over stroke: a force that falls by the band over the stroke.
@@ -138,6 +142,8 @@ impl Synthesis {
             Knob::Stress => Some(self.yield_pa? / self.allowed_pa),
             Knob::Band => Some(WIDEST / self.asked.band),
             Knob::Plates => Some(f64::from(MOST_PLATES) / f64::from(self.asked.plates)),
+            Knob::Rows => Some(f64::from(MOST_ROWS) / f64::from(self.asked.rows)),
+            Knob::Layers => Some(f64::from(MOST_LAYERS) / f64::from(self.asked.layers)),
             _ => None,
         }
         .filter(|end| *end > 1.0)
@@ -182,11 +188,9 @@ impl Synthesis {
                 let [min, now] = [asked.depth_min_m, self.asked.depth_min_m];
                 quantity("synthesise.depth.min", "smallest depth", min.unwrap_or(0.0), now, length, down)
             }
-            Knob::Plates => {
-                let text = asked.plates.to_string();
-                let now = self.asked.plates.to_string();
-                Relaxation { key: "synthesise.plates", name: "plates", value: text.clone(), text, now, at_most: false }
-            }
+            Knob::Plates => count("synthesise.plates", "plates", asked.plates, self.asked.plates),
+            Knob::Rows => count("synthesise.rows", "rows", asked.rows, self.asked.rows),
+            Knob::Layers => count("synthesise.series", "layers in series", asked.layers, self.asked.layers),
             Knob::Thickness => {
                 let now = Some(self.asked.thickness_min_m);
                 quantity("synthesise.thickness_min", "thinnest beam", asked.thickness_min_m, now, length, down)
@@ -198,6 +202,19 @@ impl Synthesis {
             }
         }
     }
+}
+
+/// A larger number of copies, if that many are allowed.
+fn more(count: u32, factor: f64, most: u32) -> Option<u32> {
+    let wanted = (f64::from(count) * factor).ceil();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most `most`")]
+    (wanted <= f64::from(most)).then_some(wanted as u32)
+}
+
+/// A number of copies in words and as it stands in a file.
+fn count(key: &'static str, name: &'static str, wanted: u32, now: u32) -> Relaxation {
+    let text = wanted.to_string();
+    Relaxation { key, name, value: text.clone(), text, now: now.to_string(), at_most: false }
 }
 
 /// To [`DIGITS`] digits.

@@ -10,6 +10,8 @@ pub(crate) struct Synthesise {
     pub depth: Section<Depth>,
     pub thickness_min: Slot<Quantity>,
     pub plates: Slot<u32>,
+    pub rows: Slot<u32>,
+    pub series: Slot<u32>,
     pub candidates: Slot<u32>,
 }
 
@@ -22,6 +24,9 @@ pub(crate) struct Depth {
 
 /// Most plates, as in `[layout]`.
 pub(crate) const MOST_PLATES: u32 = 100;
+/// Most rows and layers: each number of them is tried.
+pub(crate) const MOST_ROWS: u32 = 10;
+pub(crate) const MOST_LAYERS: u32 = 6;
 /// Most files.
 const MOST_CANDIDATES: f64 = 50.0;
 const LARGEST_M: f64 = 10.0;
@@ -33,7 +38,7 @@ impl Describe for Synthesise {
         v.point(
             &length(
                 "room",
-                "Width and height that the beams of the whole layout take over the travel, the height along the load; without it any. Pads and blocks come on top.",
+                "Width and height that the whole takes over the travel, with its pads and blocks, the height along the load; without it any.",
             ),
             &mut self.room,
         );
@@ -45,6 +50,15 @@ impl Describe for Synthesise {
         v.count(
             &Param::new("plates", "Most equal plates behind each other; 1 without it.").within(1.0, f64::from(MOST_PLATES)),
             &mut self.plates,
+        );
+        v.count(
+            &Param::new("rows", "Most rows on one block, where one is not strong enough; 1 without it.").within(1.0, f64::from(MOST_ROWS)),
+            &mut self.rows,
+        );
+        v.count(
+            &Param::new("series", "Most layers in series, where one does not move far enough; 1 without it.")
+                .within(1.0, f64::from(MOST_LAYERS)),
+            &mut self.series,
         );
         v.count(&Param::new("candidates", "Most designs written; 5 without it.").within(1.0, MOST_CANDIDATES), &mut self.candidates);
     }

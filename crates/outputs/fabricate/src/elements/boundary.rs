@@ -1,9 +1,10 @@
 //! The boundary of what is elastic: the outline without the grips.
 
+use forcewright_curves::vector::{cross, dot, norm, sub};
+
 use crate::elements::curve::Smooth;
 use crate::error::Problem;
-use crate::geometry::{Point, cross, dot, norm, sub};
-use crate::shape::Shape;
+use crate::shape::{Point, Shape};
 
 /// Points of a grip's border may be off it by this share of its size.
 const OFF: f64 = 1e-6;

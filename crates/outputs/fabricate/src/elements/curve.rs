@@ -3,9 +3,9 @@
 use std::f64::consts::FRAC_PI_8;
 
 use forcewright_base::maths;
+use forcewright_curves::vector::{cross, dot, mix, norm, sub};
 
-use crate::geometry::{Bezier, Point, cross, cubic_at, dot, norm, sub};
-use crate::shape::{Curve, Edge};
+use crate::shape::{Bezier, Curve, Edge, Point};
 
 /// A smooth curve between two points, mm.
 #[derive(Clone, Debug)]
@@ -29,10 +29,10 @@ impl Smooth {
                 let from = sub(edge.from, *centre);
                 Self::Arc { centre: *centre, radius: *radius, first_rad: maths::atan2(from[1], from[0]), sweep_rad: *sweep_rad }
             }
-            Curve::Spline(spline) => {
+            Curve::Spline(_) => {
                 let mut sum = 0.0;
                 let mut pieces: Vec<(Bezier, f64)> = Vec::new();
-                for piece in spline.beziers() {
+                for piece in edge.beziers() {
                     sum += legs(&piece).map(norm).iter().sum::<f64>();
                     pieces.push((piece, sum));
                 }
@@ -77,4 +77,10 @@ impl Smooth {
 
 fn legs(piece: &Bezier) -> [Point; 3] {
     [0, 1, 2].map(|i| sub(piece[i + 1], piece[i]))
+}
+
+/// The point of a cubic at `t` in [0, 1], by de Casteljau's algorithm.
+fn cubic_at(&[a, b, c, d]: &Bezier, t: f64) -> Point {
+    let (p, q, r) = (mix(a, b, t), mix(b, c, t), mix(c, d, t));
+    mix(mix(p, q, t), mix(q, r, t), t)
 }

@@ -5,6 +5,7 @@ mod curve;
 
 use std::collections::BTreeMap;
 
+use forcewright_curves::vector::{cross, dot, norm, sub};
 use spade::handles::FixedVertexHandle;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation as _};
 
@@ -13,8 +14,7 @@ use boundary::{Elastic, Side};
 
 use crate::cap;
 use crate::error::Problem;
-use crate::geometry::{Point, cross, dot, norm, sub};
-use crate::shape::Shape;
+use crate::shape::{Point, Shape};
 
 /// Least angle asked for, degrees: what refinement reaches with certainty is about 20, in practice 30.
 const LEAST_ANGLE_DEG: f64 = 30.0;
