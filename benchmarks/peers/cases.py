@@ -7,6 +7,9 @@ MODELS = ("inextensible", "EA", "EA+GA")
 # Of the derivatives, which are compared at one accuracy only.
 GRADIENT_ACCURACY = "1e-5"
 GRADIENT_MODEL = "EA+GA"
+# The cam in motion.
+MOTION_MODEL = "motion"
+MOTION_ACCURACIES = ("1e-3", "1e-4", "1e-5")
 
 
 @dataclass(frozen=True)
@@ -30,9 +33,11 @@ class Case:
 
     def setting(self):
         """The mesh and tolerance, in words."""
+        if self.model == MOTION_MODEL and self.method:
+            return "exact at every instant"
         if self.method:
             return f"accuracy {self.accuracy}"
-        names = {"elements": "elements per beam", "intervals": "intervals per beam"}
+        names = {"elements": "elements per beam", "intervals": "intervals per beam", "steps": "step(s) per instant"}
         words = [f"{self.options[key]} {name}" for key, name in names.items() if key in self.options]
         return ", ".join([*words, f"tolerance {self.options['tolerance']}"])
 
@@ -105,6 +110,15 @@ GRADIENTS = [
     for mode, name in (("forward", "jacfwd"), ("reverse", "jacrev"))
 ]
 
+# The cam in motion: steps per instant at which forces are compared.
+MOTIONS = [
+    Method("exudyn", "Exudyn, trapezoidal rule", "peer_exudyn_cam.py", MOTION_MODEL, {}, "steps", 32, ("1e-3", "1e-4", "1e-5", "1e-6"), {
+        "1e-3": {"steps": 1, "tolerance": "1e-4"},
+        "1e-4": {"steps": 2, "tolerance": "1e-4"},
+        "1e-5": {"steps": 5, "tolerance": "1e-6"},
+    }),
+]
+
 OURS = [
     Case("forcewright", title, model, accuracy, method=method)
     for model in MODELS
@@ -115,6 +129,11 @@ OUR_GRADIENT = Case("forcewright", "`trace` and gradients", GRADIENT_MODEL, GRAD
 
 CURVES = OURS + [method.case(accuracy, method.pinned[accuracy]) for method in METHODS for accuracy in ACCURACIES]
 DERIVATIVES = [OUR_GRADIENT] + [method.case(GRADIENT_ACCURACY, method.pinned[GRADIENT_ACCURACY], True) for method in GRADIENTS]
+IN_MOTION = [
+    Case("forcewright", title, MOTION_MODEL, accuracy, method=method)
+    for accuracy in MOTION_ACCURACIES
+    for method, title in (("motion-reduced", "reduced model"), ("motion-multibody", "general multibody engine"))
+] + [method.case(accuracy, method.pinned[accuracy]) for method in MOTIONS for accuracy in MOTION_ACCURACIES]
 PEERS = list(dict.fromkeys(method.peer for method in METHODS))
 # An independent curve for each beam model: no tool is judged by itself alone.
 CHECKS = [

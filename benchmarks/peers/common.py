@@ -25,6 +25,8 @@ class Problem:
         self.thickness = 1e3 * data["thickness_m"]
         self.bending, self.axial, self.shear = 1e6 * data["bending_n_m2"], data["axial_n"], data["shear_n"]
         self.displacements = 1e3 * np.array(data["stations_m"])
+        # The cam in motion, SI.
+        self.motion = data["motion"]
         # The scripts know this topology: two clamped beams meet in n3, two more lead to the guide at n5, which cannot turn.
         assert self.ends == [("n1", "n3"), ("n2", "n3"), ("n3", "n4"), ("n4", "n5")]
         assert data["load_node"] == "n5" and np.allclose(data["direction"], [0, -1])

@@ -24,6 +24,7 @@ ROOT = HERE.parent.parent
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")}
 # No process needs a tenth of this, s.
 PATIENCE = 600
+WORKS = ("beams", "motion")
 # Both references must agree to this.
 AGREEMENT = 1e-8
 
@@ -216,17 +217,20 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="2 rounds of 3 samples instead of 5 of 7")
     parser.add_argument("--peer", choices=cases.PEERS, help="only this one beside ours")
+    parser.add_argument("--work", choices=WORKS, help="only the force curve (and its derivatives) of beams, or only the cam in motion")
     parser.add_argument("--search", action="store_true", help="find the settings pinned in cases.py anew, and measure nothing else")
     arguments = parser.parse_args()
     rounds, samples = (2, 3) if arguments.quick else (5, 7)
-    chosen = lambda one: arguments.peer in (None, one.peer) or one.peer == "forcewright"
+    work = lambda one: WORKS[one.model == cases.MOTION_MODEL]
+    chosen = lambda one: (arguments.peer in (None, one.peer) or one.peer == "forcewright") and arguments.work in (None, work(one))
     tools = Tools()
     if arguments.search:
-        search(tools, [method for method in cases.METHODS + cases.GRADIENTS if chosen(method)], 3)
+        search(tools, [method for method in cases.METHODS + cases.GRADIENTS + cases.MOTIONS if chosen(method)], 3)
         return 0
     before = load()
-    checks = check_references(tools)
-    rows = compare(tools, [case for case in cases.CURVES + cases.DERIVATIVES if chosen(case)], rounds, samples)
+    checks = check_references(tools) if arguments.work != "motion" else []
+    everything = cases.CURVES + cases.DERIVATIVES + cases.IN_MOTION
+    rows = compare(tools, [case for case in everything if chosen(case)], rounds, samples)
     tables.add_ratios(rows)
     machine = {"processor": processor(), "cores": os.cpu_count(), "load_before": before, "load_after": load(), "system": platform.platform()}
     rust = subprocess.check_output(["rustc", "--version"], text=True, cwd=ROOT).strip()

@@ -34,6 +34,7 @@ def add_ratios(rows):
     """Processor time relative to ours of the same work, by medians and by minima."""
     ours = {(row["model"], row["accuracy"], row["gradient"], row["title"]): row for row in rows if row["peer"] == "forcewright"}
     names = {"fast": "`CurveSolver`", "general": "`trace`", "gradient": "`trace` and gradients"}
+    names |= {"reduced": "reduced model", "multibody": "general multibody engine"}
     for row in rows:
         for name, title in names.items():
             base = ours.get((row["model"], row["accuracy"], row["gradient"], title))
@@ -65,20 +66,23 @@ def table(heads, lines):
 
 
 def markdown(results):
-    """Both tables, ordered by model, accuracy and time."""
+    """All tables, ordered by model, accuracy and time."""
     order = lambda row: (row["model"], -float(row["accuracy"]), row.get("cpu_median_s", float("inf")))
     columns = ["setting", "error", "CPU ms", "least", "elapsed ms"]
     parts = []
-    for gradient, title, ratios, heads in (
-        (False, "Force curve", ("fast", "general"), ["process s", "to `CurveSolver`", "to `trace`"]),
-        (True, "Force curve and its derivatives by 13 parameters", ("gradient",), ["first call s", "to ours"]),
+    moves = lambda row: row["model"] == "motion"
+    for belongs, title, ratios, heads in (
+        (lambda row: not moves(row) and not row["gradient"], "Force curve", ("fast", "general"), ["process s", "to `CurveSolver`", "to `trace`"]),
+        (lambda row: row["gradient"], "Force curve and its derivatives by 13 parameters", ("gradient",), ["first call s", "to ours"]),
+        (moves, "The cam in motion", ("reduced", "multibody"), ["process s", "to the reduced model", "to the general engine"]),
     ):
-        rows = sorted((row for row in results["cases"] if row["gradient"] == gradient), key=order)
+        rows = sorted(filter(belongs, results["cases"]), key=order)
         if rows:
             lines = [line(row, ratios) for row in rows]
             parts.append(f"### {title}\n\n" + table(["tool", "model", "asked", *columns, *heads], lines))
     checks = "; ".join(f"{check['model']}: {check['result']}" for check in results["checks"])
-    parts.append(f"Converged curves against SciPy shooting at tolerance 1e-11, largest difference: {checks}.")
+    if checks:
+        parts.append(f"Converged curves against SciPy shooting at tolerance 1e-11, largest difference: {checks}.")
     machine = results["machine"]
     parts.append(
         f"{machine['processor']}, {machine['cores']} cores, load {machine['load_before']} before and {machine['load_after']} after; "

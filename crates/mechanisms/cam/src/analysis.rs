@@ -10,7 +10,7 @@ use crate::design::Design;
 use crate::mechanism::{Drive, Instant, Mechanism, NotAssembled, Pose, Sense};
 use crate::metrics::METRICS;
 use crate::motion::{self, Moment, integral};
-use crate::path::{Corner, corner, curvature_per_m, frame};
+use crate::path::{Corner, SidePath, curvature_per_m, frame};
 use crate::release::{End, Release, Released, release};
 
 /// Stations over the stroke, for curves and pictures.
@@ -77,16 +77,18 @@ impl Behaviour {
     /// # Errors
     /// [`CutError`] where the cam cannot be cut.
     pub fn of(design: &Design) -> Result<Self, CutError> {
-        let cut = design.cut()?;
-        let lost_m = (0..SIDES).filter_map(|side| corner(&cut, side, design.cut_roller_m)).map(|c| c.travel_m).fold(0.0, f64::max);
+        let paths = design.paths(&design.cut()?);
+        let lost_m = paths.iter().filter_map(|path| path.corner()).map(|c| c.travel_m).fold(0.0, f64::max);
         let stroke_m = design.purpose.stroke_m;
         let window_m = design.window_m.unwrap_or([lost_m.min(0.5 * stroke_m), stroke_m]);
-        Ok(Self::sampled(design, cut, window_m, STATIONS, 2 * PANELS))
+        Ok(Self::sampled(design, &paths, window_m, STATIONS, 2 * PANELS))
     }
 
-    /// What a design does on a cam, at so many intervals of the stroke, and of the window (an even number).
-    pub fn sampled(design: &Design, cut: Arc<Cut>, window_m: [f64; 2], over_stroke: usize, over_window: usize) -> Self {
-        let mechanism = design.mechanism(&cut);
+    /// What a design does on a cam whose paths are known ([`Design::paths`]), at so many intervals of the stroke, and of the window (an
+    /// even number).
+    pub fn sampled(design: &Design, paths: &[SidePath; SIDES], window_m: [f64; 2], over_stroke: usize, over_window: usize) -> Self {
+        let mechanism = design.mechanism_on(paths);
+        let cut = Arc::clone(paths[0].shared_cut());
         let corners = [0, 1].map(|side| mechanism.paths[side].corner().copied());
         let stroke_m = design.purpose.stroke_m;
         let mut evaluations = 0;
@@ -174,7 +176,7 @@ fn scan(
 fn station(mechanism: &Mechanism, travel_m: f64, near: Option<&Station>) -> Result<Station, NotAssembled> {
     let pose = mechanism.pose_near([travel_m, 0.0], near.map(|n| &n.pose))?;
     let drive = Drive::rest(travel_m);
-    let [still, up, down] = [Sense::Frictionless, Sense::Up, Sense::Down].map(|sense| mechanism.forces(&pose, &drive, sense));
+    let [still, up, down] = mechanism.forces_in(&pose, &drive, [Sense::Frictionless, Sense::Up, Sense::Down]);
     Ok(Station { travel_m, pose, still, up, down, sideways_m: [0.0; 3] })
 }
 

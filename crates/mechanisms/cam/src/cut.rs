@@ -160,6 +160,7 @@ impl Cut {
     }
 
     /// The paths' point of one side with three derivatives over λ.
+    #[inline]
     pub fn at(&self, side: usize, lambda_m: f64) -> PathPoint {
         let Purpose { springs, start_length_m, sides, .. } = &self.purpose;
         let sense = springs.sense();
@@ -181,6 +182,12 @@ impl Cut {
             None => self.deformation_m(self.purpose.law.work_j(travel_m.max(0.0))).unwrap_or(self.range_m[0]),
             Some(table) => table.inverse(travel_m),
         }
+    }
+
+    /// What [`Self::expected_m`] grows by per travel, at a travel and its λ: F/P, eq. (2), nearly so with friction. Not finite where the
+    /// springs have no force.
+    pub(crate) fn expected_slope(&self, travel_m: f64, lambda_m: f64) -> f64 {
+        self.purpose.law.force_n(travel_m)[0] / self.spring_n(lambda_m)[0]
     }
 
     /// Half the springs' length at the start and what the deformation adds to it on one side, m.
@@ -226,6 +233,7 @@ impl Cut {
     }
 
     /// Travel over deformation without friction: W(s) = E(λ), s′ = P/F(s).
+    #[inline]
     fn travel(&self, lambda_m: f64) -> Jet {
         let [force, rate] = self.spring_n(lambda_m);
         let spring = Jet([force, rate, 0.0, 0.0]);

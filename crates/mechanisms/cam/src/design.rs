@@ -159,8 +159,18 @@ impl Design {
         self.motion.is_some() || self.release.is_some()
     }
 
+    /// The paths of both rollers as they were meant, on a cam that was cut.
+    pub fn paths(&self, cut: &Arc<Cut>) -> [SidePath; SIDES] {
+        SidePath::both(cut, self.cut_roller_m)
+    }
+
     /// The mechanism on a cam that was cut.
     pub fn mechanism(&self, cut: &Arc<Cut>) -> Mechanism {
+        self.mechanism_on(&self.paths(cut))
+    }
+
+    /// The same with the paths of that cam at hand: of another design with the same cam, they may have any flaws.
+    pub fn mechanism_on(&self, paths: &[SidePath; SIDES]) -> Mechanism {
         let built = &self.built;
         let flaws = |side: usize| {
             let tilt = if side == 0 { built.tilt_rad } else { -built.tilt_rad };
@@ -168,18 +178,18 @@ impl Design {
                 turn_rad: built.turn_rad[side] + tilt,
                 shift_m: [built.offset_m[side], built.height_m],
                 swell_m: built.roller_m - self.cut_roller_m,
-                error: built.profile_error(side),
+                error: built.profile_error(side, &paths[side]),
             }
         };
         Mechanism {
-            paths: [0, 1].map(|side| SidePath::new(Arc::clone(cut), side, self.cut_roller_m, &flaws(side))),
+            paths: [0, 1].map(|side| paths[side].with(&flaws(side))),
             brace_m: built.brace_m,
             roller_m: built.roller_m,
             arm_m: built.arm_m,
             springs: Bank::new(built.springs.clone(), built.extension),
             bodies: built.bodies,
             gravity_m_per_s2: built.gravity_m_per_s2,
-            rise_m: cut.rise_m(0),
+            rise_m: paths[0].cut().rise_m(0),
         }
     }
 }
@@ -192,9 +202,9 @@ impl Built {
     }
 
     /// What the profile of a side deviates along its normal.
-    fn profile_error(&self, side: usize) -> Option<Arc<dyn NormalError>> {
+    fn profile_error(&self, side: usize, path: &SidePath) -> Option<Arc<dyn NormalError>> {
         let measured = self.measured.as_ref().and_then(|m| m.errors[side].clone()).map(|e| e as Arc<dyn NormalError>);
-        together(measured, self.random.and_then(|r| r.of(side)))
+        together(measured, self.random.and_then(|r| r.along(side, path.length_m())))
     }
 }
 

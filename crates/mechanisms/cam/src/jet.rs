@@ -12,27 +12,32 @@ pub struct Jet(pub(crate) [f64; 4]);
 
 impl Jet {
     /// A number that does not vary.
+    #[inline]
     pub fn constant(value: f64) -> Self {
         Self([value, 0.0, 0.0, 0.0])
     }
 
     /// The variable itself.
+    #[inline]
     pub fn variable(value: f64) -> Self {
         Self([value, 1.0, 0.0, 0.0])
     }
 
     /// The value.
+    #[inline]
     pub fn value(&self) -> f64 {
         self.0[0]
     }
 
     /// The derivative of order 0 to 3.
+    #[inline]
     pub fn derivative(&self, order: usize) -> f64 {
         const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
         self.0[order] * FACTORIAL[order]
     }
 
     /// Its square root; not a number below zero, without finite derivatives at zero.
+    #[inline]
     pub fn sqrt(self) -> Self {
         let Self(a) = self;
         let r = a[0].sqrt();
@@ -46,6 +51,7 @@ impl Jet {
 impl Add for Jet {
     type Output = Self;
 
+    #[inline]
     fn add(self, Self(b): Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i] + b[i]))
     }
@@ -54,6 +60,7 @@ impl Add for Jet {
 impl Sub for Jet {
     type Output = Self;
 
+    #[inline]
     fn sub(self, Self(b): Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i] - b[i]))
     }
@@ -62,6 +69,7 @@ impl Sub for Jet {
 impl Neg for Jet {
     type Output = Self;
 
+    #[inline]
     fn neg(self) -> Self {
         Self(self.0.map(|x| -x))
     }
@@ -70,6 +78,7 @@ impl Neg for Jet {
 impl Mul for Jet {
     type Output = Self;
 
+    #[inline]
     fn mul(self, Self(b): Self) -> Self {
         let a = self.0;
         Self([
@@ -84,6 +93,7 @@ impl Mul for Jet {
 impl Mul<f64> for Jet {
     type Output = Self;
 
+    #[inline]
     fn mul(self, factor: f64) -> Self {
         Self(self.0.map(|x| x * factor))
     }
@@ -92,6 +102,7 @@ impl Mul<f64> for Jet {
 impl Div for Jet {
     type Output = Self;
 
+    #[inline]
     fn div(self, Self(b): Self) -> Self {
         let (a, over) = (self.0, 1.0 / b[0]);
         let q0 = a[0] * over;
@@ -104,6 +115,7 @@ impl Div for Jet {
 impl Add<f64> for Jet {
     type Output = Self;
 
+    #[inline]
     fn add(mut self, shift: f64) -> Self {
         self.0[0] += shift;
         self

@@ -5,10 +5,8 @@
 //! the one that guides it. At rest this is eq. (1) of Sánchez-Salinas et al.; without friction it is the reduced Lagrangian of
 //! `docs/theory/cam.md`, eq. (8), term by term.
 
-use forcewright_base::maths;
-
 use crate::cut::SIDES;
-use crate::path::{Place, SidePath, Vector, frame};
+use crate::path::{Place, SidePath, Vector, frame, length};
 use crate::springs::Bank;
 
 /// How the mass of the springs moves with the rollers.
@@ -94,6 +92,8 @@ pub struct Pose {
     pub travel_m: f64,
     /// λ of each side, m.
     pub lambda_m: [f64; SIDES],
+    /// By how much it is beyond the λ of the mechanism as it was designed, m.
+    pub beyond_m: [f64; SIDES],
     /// The paths' points.
     pub places: [Place; SIDES],
     /// The slider's joint in the coordinates of each side, m.
@@ -137,8 +137,18 @@ pub struct Instant {
     pub spring_m: f64,
 }
 
-/// Steps of Newton's method for a position.
+/// Steps for a position.
 const MOST_STEPS: u32 = 40;
+/// A step this small, relative to the springs' length at the start, needs no new evaluation of the path: its Taylor series is exact.
+const NEAR: f64 = 1e-13;
+
+/// Position of a roller.
+#[derive(Clone, Copy, Debug)]
+struct SidePose {
+    lambda_m: f64,
+    beyond_m: f64,
+    place: Place,
+}
 
 fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1]
@@ -169,9 +179,20 @@ struct Motion {
     rolls: f64,
 }
 
+/// Forces that a side needs for its weight and its motion, N.
+#[derive(Clone, Copy, Debug)]
+struct Needs {
+    /// At the roller, from the cam along its normal with friction, and from the brace along it.
+    at_roller: Vector,
+    /// At the joint, beside the tension of the brace.
+    at_joint: Vector,
+    /// What holds the rolling rim back along the path.
+    rim_n: f64,
+}
+
 impl Mechanism {
     /// Whether both sides are the same and the joint is on the axis, so that one side tells both.
-    fn symmetric(&self, sideways: [f64; 3]) -> bool {
+    pub(crate) fn symmetric(&self, sideways: [f64; 3]) -> bool {
         sideways.iter().all(|x| *x == 0.0)
             && self.brace_m[0].to_bits() == self.brace_m[1].to_bits()
             && self.paths[0].is_like(&self.paths[1])
@@ -194,15 +215,42 @@ impl Mechanism {
     ///
     /// # Errors
     /// [`NotAssembled`] as [`Self::pose`].
+    #[inline]
     pub fn pose_near(&self, at: Vector, near: Option<&Pose>) -> Result<Pose, NotAssembled> {
         let height = at[0] + self.rise_m;
         let joints = [[at[1], height], [-at[1], height]];
         let mut evaluations = 0;
         let right = self.side_pose(0, joints[0], at[0], near, &mut evaluations)?;
         let left = if self.symmetric([at[1], 0.0, 0.0]) { right } else { self.side_pose(1, joints[1], at[0], near, &mut evaluations)? };
-        Ok(Pose { travel_m: at[0], lambda_m: [right.0, left.0], places: [right.1, left.1], joints, evaluations })
+        Ok(Pose {
+            travel_m: at[0],
+            lambda_m: [right.lambda_m, left.lambda_m],
+            beyond_m: [right.beyond_m, left.beyond_m],
+            places: [right.place, left.place],
+            joints,
+            evaluations,
+        })
     }
 
+    /// Where to look for λ: as far from where it was meant to be as it was nearby, and what the joint's way from there does besides.
+    #[inline]
+    fn guess_m(&self, side: usize, joint: Vector, expected_m: f64, near: Option<&Pose>) -> f64 {
+        let Some(pose) = near else { return expected_m };
+        // Where it was meant to be, as on a cam without flaws.
+        if pose.beyond_m[side].abs() < NEAR * expected_m {
+            return expected_m;
+        }
+        let (place, before) = (&pose.places[side], pose.joints[side]);
+        let arm = sum(&[(1.0, place.at), (-1.0, before)]);
+        let way = sum(&[(1.0, joint), (-1.0, before)]);
+        let meant = self.paths[side].cut().expected_slope(pose.travel_m, pose.lambda_m[side] - pose.beyond_m[side]);
+        let more = dot(arm, way) / dot(arm, place.slope) - meant * way[1];
+        let close = more.abs() < pose.beyond_m[side].abs() + 1e-3 * self.brace_m[side];
+        expected_m + pose.beyond_m[side] + if close { more } else { 0.0 }
+    }
+
+    /// Solves |path(λ) − joint| = brace by Halley's method.
+    #[inline]
     fn side_pose(
         &self,
         side: usize,
@@ -210,37 +258,55 @@ impl Mechanism {
         travel_m: f64,
         near: Option<&Pose>,
         evaluations: &mut u32,
-    ) -> Result<(f64, Place), NotAssembled> {
-        let length = self.brace_m[side];
+    ) -> Result<SidePose, NotAssembled> {
+        let brace_m = self.brace_m[side];
         let path = &self.paths[side];
-        let expected = path.cut().expected_m(travel_m);
-        // As far from where it was meant to be as it was at the position nearby.
-        let mut lambda = near.map_or(expected, |pose| expected + pose.lambda_m[side] - path.cut().expected_m(pose.travel_m));
+        let expected_m = path.cut().expected_m(travel_m);
         let scale = path.cut().purpose().start_length_m;
-        let mut gap = f64::INFINITY;
+        let mut lambda = self.guess_m(side, joint, expected_m, near);
         let mut place = path.at(lambda);
+        let mut miss = f64::INFINITY;
+        let mut arm = [0.0; 2];
         *evaluations += 1;
         for _ in 0..MOST_STEPS {
-            let arm = sum(&[(1.0, place.at), (-1.0, joint)]);
-            let distance = maths::hypot(arm[0], arm[1]);
-            gap = distance - length;
-            let slope = dot(arm, place.slope) / distance;
-            let change = (gap / slope).clamp(-0.1 * scale, 0.1 * scale);
+            arm = sum(&[(1.0, place.at), (-1.0, joint)]);
+            // Half the difference of the squares: the gap times the length of the brace, to first order.
+            miss = 0.5 * (dot(arm, arm) - brace_m * brace_m);
+            // The root with the roller below the joint: the other crossing is above it.
+            let found = |lambda: f64, place: Place| {
+                if arm[1] < 0.0 {
+                    Ok(SidePose { lambda_m: lambda, beyond_m: lambda - expected_m, place })
+                } else {
+                    Err(self.apart(side, arm))
+                }
+            };
+            if miss.abs() < 4.0 * f64::EPSILON * brace_m * brace_m {
+                return found(lambda, place);
+            }
+            let slope = dot(arm, place.slope);
+            let newton = miss / slope;
+            let bent = 0.5 * newton * (dot(place.slope, place.slope) + dot(arm, place.bend)) / slope;
+            // Where the crossing is nearly a touch, Newton's step alone.
+            let change = (if bent.abs() < 0.1 { newton / (1.0 - bent) } else { newton }).clamp(-0.1 * scale, 0.1 * scale);
             if !change.is_finite() {
                 break;
             }
-            if change.abs() < 2e-16 * scale || gap.abs() < 4.0 * f64::EPSILON * length {
-                // The root with the roller below the joint: the other crossing is above it.
-                let below = arm[1] < 0.0;
-                return if below { Ok((lambda, place)) } else { Err(NotAssembled { side, gap_m: gap }) };
+            if change.abs() < NEAR * scale {
+                place.at = sum(&[(1.0, place.at), (-change, place.slope)]);
+                place.slope = sum(&[(1.0, place.slope), (-change, place.bend)]);
+                return found(lambda - change, place);
             }
             lambda -= change;
             place = path.at(lambda);
             *evaluations += 1;
         }
         // The last digits may move to and fro.
-        let arm = sum(&[(1.0, place.at), (-1.0, joint)]);
-        if gap.abs() < 1e-13 * length && arm[1] < 0.0 { Ok((lambda, place)) } else { Err(NotAssembled { side, gap_m: gap }) }
+        let close = miss.abs() < 1e-13 * brace_m * brace_m && arm[1] < 0.0;
+        if close { Ok(SidePose { lambda_m: lambda, beyond_m: lambda - expected_m, place }) } else { Err(self.apart(side, arm)) }
+    }
+
+    fn apart(&self, side: usize, arm: Vector) -> NotAssembled {
+        NotAssembled { side, gap_m: length(arm) - self.brace_m[side] }
     }
 
     /// Forces at an instant of a motion.
@@ -253,31 +319,31 @@ impl Mechanism {
 
     /// Forces at a position that was found.
     pub fn forces(&self, pose: &Pose, drive: &Drive, sense: Sense) -> Instant {
+        let [instant] = self.forces_in(pose, drive, [sense]);
+        instant
+    }
+
+    /// The same for several senses of friction, which share all but the last equations.
+    pub fn forces_in<const N: usize>(&self, pose: &Pose, drive: &Drive, senses: [Sense; N]) -> [Instant; N] {
         let symmetric = self.symmetric([drive.at[1], drive.velocity[1], drive.acceleration[1]]);
         let right = self.motion(0, pose, drive);
         let left = if symmetric { right } else { self.motion(1, pose, drive) };
         let motions = [right, left];
         let [pr, pl] = [pose.places[0].at, pose.places[1].at];
         let apart = [-(pr[0] + pl[0]), pl[1] - pr[1]];
-        let spring_m = maths::hypot(apart[0], apart[1]);
+        let spring_m = length(apart);
         let [spring_n, _] = self.springs.tension_n(spring_m);
-        let pulls = [
-            [spring_n / spring_m * apart[0], spring_n / spring_m * apart[1]],
-            [spring_n / spring_m * apart[0], -spring_n / spring_m * apart[1]],
-        ];
-        let mut sides = [SideForces::default(); SIDES];
-        let mut on_joint = [[0.0; 2]; SIDES];
-        for side in 0..SIDES {
-            if side == 1 && symmetric {
-                (sides[1], on_joint[1]) = (sides[0], on_joint[0]);
-                break;
-            }
-            (sides[side], on_joint[side]) = self.side_forces(side, &motions, pulls[side], sense);
-        }
+        let pull = [spring_n / spring_m * apart[0], spring_n / spring_m * apart[1]];
+        let right = self.needs(0, &motions, pull);
+        let left = if symmetric { right } else { self.needs(1, &motions, [pull[0], -pull[1]]) };
         let slider = self.bodies.slider_kg;
-        let along = on_joint[0][1] + on_joint[1][1] + slider * (drive.acceleration[0] + self.gravity_m_per_s2);
-        let guide_n = on_joint[0][0] - on_joint[1][0] + slider * drive.acceleration[1];
-        Instant { force_n: along, guide_n, sides, spring_n, spring_m }
+        senses.map(|sense| {
+            let (on_right, from_right) = self.side_forces(&motions[0], &right, sense);
+            let (on_left, from_left) = if symmetric { (on_right, from_right) } else { self.side_forces(&motions[1], &left, sense) };
+            let force_n = from_right[1] + from_left[1] + slider * (drive.acceleration[0] + self.gravity_m_per_s2);
+            let guide_n = from_right[0] - from_left[0] + slider * drive.acceleration[1];
+            Instant { force_n, guide_n, sides: [on_right, on_left], spring_n, spring_m }
+        })
     }
 
     fn motion(&self, side: usize, pose: &Pose, drive: &Drive) -> Motion {
@@ -300,8 +366,8 @@ impl Mechanism {
         Motion { along, normal, brace, roller_acceleration, joint_acceleration, turning, rolls }
     }
 
-    /// Forces of a side, and what its brace needs from the joint.
-    fn side_forces(&self, side: usize, motions: &[Motion; SIDES], pull: Vector, sense: Sense) -> (SideForces, Vector) {
+    /// What a side needs of contact and brace, whichever way friction acts.
+    fn needs(&self, side: usize, motions: &[Motion; SIDES], pull: Vector) -> Needs {
         let m = &motions[side];
         let b = &self.bodies;
         let length = self.brace_m[side];
@@ -320,15 +386,20 @@ impl Mechanism {
             SpringMass::Halves => sum(&[(0.5 * spring_kg, m.roller_acceleration), (0.5 * spring_kg, up)]),
         };
         // Rolling: the rim's inertia holds the centre back along the path.
-        let rim = b.roller_kg_m2 / (self.roller_m * self.roller_m) * dot(m.roller_acceleration, m.along);
-        let needed = sum(&[
+        let rim_n = b.roller_kg_m2 / (self.roller_m * self.roller_m) * dot(m.roller_acceleration, m.along);
+        let at_roller = sum(&[
             (b.roller_kg, m.roller_acceleration),
             (b.roller_kg, up),
             (1.0, spring_inertia),
-            (rim, m.along),
+            (rim_n, m.along),
             (-1.0, pull),
             (-1.0, across_brace),
         ]);
+        Needs { at_roller, at_joint: sum(&[(b.brace_kg, middle), (1.0, across_brace)]), rim_n }
+    }
+
+    /// Forces of a side, and what its brace needs from the joint.
+    fn side_forces(&self, m: &Motion, needs: &Needs, sense: Sense) -> (SideForces, Vector) {
         let friction = match sense {
             Sense::Up => m.rolls * self.friction(),
             Sense::Down => -m.rolls * self.friction(),
@@ -338,12 +409,11 @@ impl Mechanism {
         let solve = |friction: f64| {
             let contact = sum(&[(1.0, m.normal), (-friction, m.along)]);
             let over = 1.0 / cross(contact, m.brace);
-            (friction, cross(needed, m.brace) * over, cross(contact, needed) * over)
+            (friction, cross(needs.at_roller, m.brace) * over, cross(contact, needs.at_roller) * over)
         };
         let pushing = solve(friction);
         let (friction, normal_n, brace_n) = if pushing.1 < 0.0 && friction != 0.0 { solve(-friction) } else { pushing };
-        let tangential_n = -friction * normal_n - rim;
-        let on_joint = sum(&[(b.brace_kg, middle), (brace_n, m.brace), (1.0, across_brace)]);
-        (SideForces { normal_n, tangential_n, brace_n }, on_joint)
+        let tangential_n = -friction * normal_n - needs.rim_n;
+        (SideForces { normal_n, tangential_n, brace_n }, sum(&[(1.0, needs.at_joint), (brace_n, m.brace)]))
     }
 }

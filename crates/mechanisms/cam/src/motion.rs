@@ -161,9 +161,8 @@ pub fn prescribed(mechanism: &Mechanism, motion: &Motion, sideways_m: Option<f64
 
 /// Everything about an instant whose position is known.
 pub(crate) fn moment(mechanism: &Mechanism, pose: &Pose, drive: &Drive, sense: Sense, time_s: f64) -> Moment {
-    let moving = mechanism.forces(pose, drive, sense);
+    let [moving, smooth] = mechanism.forces_in(pose, drive, [sense, Sense::Frictionless]);
     let resting = mechanism.forces(pose, &Drive { at: drive.at, ..Drive::default() }, sense);
-    let smooth = mechanism.forces(pose, drive, Sense::Frictionless);
     let lost_w = (moving.force_n - smooth.force_n) * drive.velocity[0] + (moving.guide_n - smooth.guide_n) * drive.velocity[1];
     let [travel_m, sideways_m] = drive.at;
     Moment { time_s, travel_m, speed_m_per_s: drive.velocity[0], sideways_m, moving, resting, lost_w, cable_n: None }

@@ -1,11 +1,11 @@
 //! The path of a roller's centre on the cam as it was made: what it was cut for, moved and with its errors, and where the cam is
 //! undercut the corner on which the roller turns.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use forcewright_base::maths;
 
-use crate::cut::Cut;
+use crate::cut::{Cut, SIDES};
 use crate::jet::Jet;
 
 /// A plane vector.
@@ -46,13 +46,41 @@ pub struct SidePath {
     side: usize,
     roller_m: f64,
     corner: Option<Corner>,
-    error: Option<(Arc<dyn NormalError>, Arc<ArcLength>)>,
+    /// Of the path as designed: found when an error first asks for it, and shared by all copies.
+    arc: Arc<OnceLock<ArcLength>>,
+    error: Option<Arc<dyn NormalError>>,
     /// Cosine and sine of the angle by which it is turned about the origin, towards the axis.
     turn: Vector,
     /// By how much it is shifted afterwards, m.
     shift_m: Vector,
     /// By how much it lies further from the cam than it was meant, m.
     swell_m: f64,
+    /// How the roller turns about the corner, before the path is turned and shifted.
+    circle: Option<Circle>,
+}
+
+/// A circle that continues the path below its corner without a kink.
+#[derive(Clone, Copy, Debug)]
+struct Circle {
+    /// λ where it begins, m.
+    lambda_m: f64,
+    /// The corner, m.
+    centre: Vector,
+    /// From the corner to the roller's centre where it begins, m.
+    from: Vector,
+    /// Angle over λ, rad/m.
+    rate: f64,
+}
+
+/// What a small error of the profile does to a point of the path at its λ.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sway {
+    /// Arc length at which the error counts, m.
+    pub arc_m: f64,
+    /// Change of the point per error, and per slope of the error over the arc length, m.
+    pub at: [Vector; 2],
+    /// Change of the first derivative over λ.
+    pub slope: [Vector; 2],
 }
 
 /// Arc length of the path as designed, by λ: only errors of the profile need it.
@@ -83,10 +111,58 @@ const LOOKS: usize = 400;
 impl SidePath {
     /// The path of a roller of this radius on a side of the cam.
     pub fn new(cut: Arc<Cut>, side: usize, roller_m: f64, flaws: &Flaws) -> Self {
-        let (sin, cos) = maths::sin_cos(flaws.turn_rad);
+        Self::flawless(cut, side, roller_m).with(flaws)
+    }
+
+    /// Both paths of a cam for rollers of this radius, as they were meant. What takes time is done here once for all cams that are made
+    /// to these paths: see [`Self::with`].
+    pub fn both(cut: &Arc<Cut>, roller_m: f64) -> [Self; SIDES] {
+        let right = Self::flawless(Arc::clone(cut), 0, roller_m);
+        let [a, b] = &cut.purpose().sides;
+        let left = if a == b { Self { side: 1, ..right.clone() } } else { Self::flawless(Arc::clone(cut), 1, roller_m) };
+        [right, left]
+    }
+
+    fn flawless(cut: Arc<Cut>, side: usize, roller_m: f64) -> Self {
         let corner = corner(&cut, side, roller_m);
-        let error = flaws.error.clone().map(|error| (error, Arc::new(ArcLength::of(&cut, side))));
-        Self { cut, side, roller_m, corner, error, turn: [cos, sin], shift_m: flaws.shift_m, swell_m: flaws.swell_m }
+        Self {
+            cut,
+            side,
+            roller_m,
+            corner,
+            arc: Arc::default(),
+            error: None,
+            turn: [1.0, 0.0],
+            shift_m: [0.0; 2],
+            swell_m: 0.0,
+            circle: None,
+        }
+        .with(&Flaws::default())
+    }
+
+    /// The same path with these flaws instead of its own.
+    #[must_use]
+    pub fn with(&self, flaws: &Flaws) -> Self {
+        let (sin, cos) = maths::sin_cos(flaws.turn_rad);
+        let mut made = Self {
+            error: flaws.error.clone(),
+            turn: [cos, sin],
+            shift_m: flaws.shift_m,
+            swell_m: flaws.swell_m,
+            circle: None,
+            ..self.clone()
+        };
+        made.circle = made.corner.map(|corner| made.circle_from(corner.lambda_m));
+        made
+    }
+
+    /// Length of the path as it was designed and a tenth beyond, m: on it errors of the profile are given.
+    pub fn length_m(&self) -> f64 {
+        self.arc().rows.last().map_or(0.0, |row| row[1])
+    }
+
+    pub(crate) fn arc(&self) -> &ArcLength {
+        self.arc.get_or_init(|| ArcLength::of(&self.cut, self.side))
     }
 
     /// Where the cam is undercut; `None` if it is not.
@@ -96,11 +172,15 @@ impl SidePath {
 
     /// Deviation of the profile along its normal, m; `None` where it has none.
     pub fn error_m(&self, lambda_m: f64) -> Option<f64> {
-        self.error.as_ref().map(|(error, arc)| error.at(arc.at(lambda_m))[0])
+        self.error.as_ref().map(|error| error.at(self.arc().at(lambda_m))[0])
     }
 
     /// What it was cut for.
     pub fn cut(&self) -> &Cut {
+        &self.cut
+    }
+
+    pub(crate) fn shared_cut(&self) -> &Arc<Cut> {
         &self.cut
     }
 
@@ -117,54 +197,74 @@ impl SidePath {
     }
 
     /// The point of the path as it is made.
+    #[inline]
     pub fn at(&self, lambda_m: f64) -> Place {
-        let place = match &self.corner {
-            Some(corner) if lambda_m < corner.lambda_m => self.on_corner(corner, lambda_m),
+        let place = match &self.circle {
+            Some(circle) if lambda_m < circle.lambda_m => circle.at(lambda_m),
             _ => self.on_profile(lambda_m),
         };
+        let [x, y] = self.turned(place.at);
+        Place { at: [x + self.shift_m[0], y + self.shift_m[1]], slope: self.turned(place.slope), bend: self.turned(place.bend) }
+    }
+
+    fn turned(&self, [x, y]: Vector) -> Vector {
         let [cos, sin] = self.turn;
-        let turned = |[x, y]: Vector| [cos * x - sin * y, sin * x + cos * y];
-        let [x, y] = turned(place.at);
-        Place { at: [x + self.shift_m[0], y + self.shift_m[1]], slope: turned(place.slope), bend: turned(place.bend) }
+        [cos * x - sin * y, sin * x + cos * y]
+    }
+
+    /// What a further small error of the profile would do.
+    pub(crate) fn sway(&self, lambda_m: f64) -> Sway {
+        let on_circle = self.circle.filter(|circle| lambda_m < circle.lambda_m);
+        let lambda = on_circle.map_or(lambda_m, |circle| circle.lambda_m);
+        let designed = self.designed(lambda);
+        let sense = self.cut.purpose().springs.sense();
+        let [along, normal] = frame(&designed, sense);
+        let speed = length(designed.slope);
+        // The normal turns as the tangent does.
+        let stretch = along[0] * designed.bend[0] + along[1] * designed.bend[1];
+        let turning = [designed.bend[0] - along[0] * stretch, designed.bend[1] - along[1] * stretch];
+        let turning = [sense * turning[1] / speed, -sense * turning[0] / speed];
+        let (mut at, mut slope) = ([normal, [0.0; 2]], [turning, normal.map(|n| n * speed)]);
+        if on_circle.is_some() {
+            // The corner follows the end of the profile and lies behind it along the normal there.
+            let own = length(self.on_profile(lambda).slope);
+            let back = (self.roller_m + self.swell_m) * speed / own;
+            (at[1], slope) = (along.map(|t| back * t), [[0.0; 2]; 2]);
+        }
+        Sway { arc_m: self.arc().at(lambda), at: at.map(|v| self.turned(v)), slope: slope.map(|v| self.turned(v)) }
     }
 
     /// The path on the profile with its errors.
+    #[inline]
     fn on_profile(&self, lambda_m: f64) -> Place {
         match &self.error {
             None if self.swell_m == 0.0 => self.designed(lambda_m),
             None => self.deviating(lambda_m, [self.swell_m, 0.0, 0.0]),
-            Some((error, arc)) => {
-                let [e, slope, bend] = error.at(arc.at(lambda_m));
+            Some(error) => {
+                let [e, slope, bend] = error.at(self.arc().at(lambda_m));
                 self.deviating(lambda_m, [e + self.swell_m, slope, bend])
             }
         }
     }
 
     /// The path as it was meant, also where the cam that it needs is undercut.
+    #[inline]
     pub fn designed(&self, lambda_m: f64) -> Place {
         let p = self.cut.at(self.side, lambda_m);
         let pick = |order: usize| [p.x.derivative(order), p.y.derivative(order)];
         Place { at: pick(0), slope: pick(1), bend: pick(2) }
     }
 
-    /// The roller turns about the corner: a circle that continues the path without a kink.
-    fn on_corner(&self, corner: &Corner, lambda_m: f64) -> Place {
-        let join = self.on_profile(corner.lambda_m);
-        let sense = self.cut.purpose().springs.sense();
-        // The corner lies where the profile with its errors ends, a roller's radius behind the path.
-        let [_, normal] = frame(&join, sense);
+    /// The roller turns about the corner: the circle that continues the path without a kink. The corner lies where the profile with its
+    /// errors ends, a roller's radius behind the path.
+    fn circle_from(&self, lambda_m: f64) -> Circle {
+        let join = self.on_profile(lambda_m);
+        let [_, normal] = frame(&join, self.cut.purpose().springs.sense());
         let radius = self.roller_m + self.swell_m;
         let from = [radius * normal[0], radius * normal[1]];
-        let corner_at = [join.at[0] - from[0], join.at[1] - from[1]];
-        let speed = maths::hypot(join.slope[0], join.slope[1]);
-        let rate = speed / radius * (from[0] * join.slope[1] - from[1] * join.slope[0]).signum();
-        let (sin, cos) = maths::sin_cos(rate * (lambda_m - corner.lambda_m));
-        let arm = [cos * from[0] - sin * from[1], sin * from[0] + cos * from[1]];
-        Place {
-            at: [corner_at[0] + arm[0], corner_at[1] + arm[1]],
-            slope: [-rate * arm[1], rate * arm[0]],
-            bend: [-rate * rate * arm[0], -rate * rate * arm[1]],
-        }
+        let sign = (from[0] * join.slope[1] - from[1] * join.slope[0]).signum();
+        let centre = [join.at[0] - from[0], join.at[1] - from[1]];
+        Circle { lambda_m, centre, from, rate: length(join.slope) / radius * sign }
     }
 
     /// The path with a deviation along its normal, given with its derivatives over the arc length.
@@ -184,17 +284,35 @@ impl SidePath {
     }
 }
 
+impl Circle {
+    fn at(&self, lambda_m: f64) -> Place {
+        let Self { centre, from, rate, .. } = *self;
+        let (sin, cos) = maths::sin_cos(rate * (lambda_m - self.lambda_m));
+        let arm = [cos * from[0] - sin * from[1], sin * from[0] + cos * from[1]];
+        Place {
+            at: [centre[0] + arm[0], centre[1] + arm[1]],
+            slope: [-rate * arm[1], rate * arm[0]],
+            bend: [-rate * rate * arm[0], -rate * rate * arm[1]],
+        }
+    }
+}
+
+/// Length of a vector whose square neither overflows nor vanishes.
+pub(crate) fn length([x, y]: Vector) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
 /// Curvature of the path at a point, 1/m: positive where the cam is convex there.
 pub fn curvature_per_m(place: &Place, sense: f64) -> f64 {
     let [dx, dy] = place.slope;
-    let speed = maths::hypot(dx, dy);
+    let speed = length(place.slope);
     sense * (dx * place.bend[1] - dy * place.bend[0]) / (speed * speed * speed)
 }
 
 /// Unit vectors along the path and from the cam to the roller.
 pub fn frame(place: &Place, sense: f64) -> [Vector; 2] {
     let [dx, dy] = place.slope;
-    let over = 1.0 / maths::hypot(dx, dy);
+    let over = 1.0 / length(place.slope);
     let along = [dx * over, dy * over];
     [along, [sense * along[1], -sense * along[0]]]
 }
@@ -231,7 +349,7 @@ impl ArcLength {
         let end = to + 0.1 * (to - from);
         let speed = |lambda: f64| {
             let p = cut.at(side, lambda);
-            maths::hypot(p.x.derivative(1), p.y.derivative(1))
+            length([p.x.derivative(1), p.y.derivative(1)])
         };
         let gauss = forcewright_base::quadrature::GaussLegendre::new(5);
         let mut rows = vec![[from, 0.0, speed(from)]];

@@ -1,16 +1,16 @@
 //! A design for studies that look at many: forces both ways over the window, and what follows from the whole stroke.
 
-use std::sync::Arc;
-
 use forcewright_base::units::Dimension;
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
 
 use super::knobs::Knobs;
 use crate::analysis::{Behaviour, measure_scalars};
-use crate::cut::Cut;
+use crate::cut::SIDES;
 use crate::design::Design;
 use crate::law::ForceLaw;
 use crate::metrics::{CamMetrics, METRICS};
+use crate::motion::Motion;
+use crate::path::SidePath;
 
 /// Panels of the window, each with a station in its middle.
 const PANELS: usize = 40;
@@ -58,8 +58,8 @@ pub(super) const SCALARS: [&str; 16] = [
 pub(super) struct Many {
     knobs: Knobs,
     base: Design,
-    /// The cam, where it is the same for all.
-    cut: Option<Arc<Cut>>,
+    /// The paths on the cam, where it is the same for all.
+    paths: Option<[SidePath; SIDES]>,
     window_m: [f64; 2],
     wanted: Option<ForceLaw>,
     outputs: Vec<Output>,
@@ -72,7 +72,7 @@ struct Room {
 
 impl Many {
     pub(super) fn new(design: &Design, knobs: Knobs) -> Self {
-        let cut = if knobs.cuts() { None } else { design.cut().ok() };
+        let paths = if knobs.cuts() { None } else { design.cut().ok().map(|cut| design.paths(&cut)) };
         let nominal = Behaviour::of(design).ok();
         let window_m = nominal.map_or([0.0, design.purpose.stroke_m], |b| b.window_m);
         let force =
@@ -83,7 +83,10 @@ impl Many {
             outputs.push(Output { name: (*name).to_owned(), unit, values: 3 * STATIONS + index..3 * STATIONS + index + 1 });
         }
         let wanted = design.requirements.as_ref().and_then(|r| r.force.as_ref()).map(|(law, _)| law.clone());
-        Self { cut, window_m, wanted, outputs, measures: measures(design), base: design.clone(), knobs }
+        // No value of a study is about the slower motion.
+        let motion = design.motion.map(|motion| Motion { reference_s: None, ..motion });
+        let base = Design { motion, ..design.clone() };
+        Self { paths, window_m, wanted, outputs, measures: measures(design), base, knobs }
     }
 
     /// Travels at which forces are computed, m.
@@ -207,11 +210,15 @@ impl Evaluator for Many {
         let room = workspace.get::<Room>().ok_or_else(|| failure("the room is another evaluator's".to_owned()))?;
         room.design.clone_from(&self.base);
         self.knobs.apply(x, &mut room.design);
-        let cut = match &self.cut {
-            Some(cut) => Arc::clone(cut),
-            None => room.design.cut().map_err(|e| failure(format!("the cam cannot be cut: {e:?}")))?,
+        let new;
+        let paths = if let Some(paths) = &self.paths {
+            paths
+        } else {
+            let cut = room.design.cut().map_err(|e| failure(format!("the cam cannot be cut: {e:?}")))?;
+            new = room.design.paths(&cut);
+            &new
         };
-        let behaviour = Behaviour::sampled(&room.design, cut, self.window_m, 2 * PANELS, 2 * PANELS);
+        let behaviour = Behaviour::sampled(&room.design, paths, self.window_m, 2 * PANELS, 2 * PANELS);
         if behaviour.stopped.is_some() || room.design.moves() != behaviour.motion.is_some() {
             return Err(failure("a brace misses the path of its roller".to_owned()));
         }

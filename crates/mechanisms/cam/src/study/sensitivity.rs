@@ -1,7 +1,5 @@
 //! What each tolerance of the file does by itself: the analysis with one number at either end of its `±`, on the cam as it was cut.
 
-use std::sync::Arc;
-
 use forcewright_base::diagnostics::Diagnostics;
 use forcewright_base::units::format_si;
 use forcewright_contract::numbers::{Number, numbers_of};
@@ -9,8 +7,9 @@ use forcewright_contract::studies::{Free, Purpose};
 
 use super::knobs::Knobs;
 use crate::analysis::{Behaviour, Measured, measure};
-use crate::cut::Cut;
+use crate::cut::SIDES;
 use crate::design::Design;
+use crate::path::SidePath;
 use crate::spec::Spec;
 
 /// Intervals of the stroke and of the window; two of the latter per panel of Simpson's rule.
@@ -64,11 +63,11 @@ impl Scatter {
     /// Effects in the order of the file; a value is not a number where the mechanism does not reach the end of its stroke.
     pub(crate) fn effects(&self, design: &Design, behaviour: &Behaviour) -> Vec<Effect> {
         let nominal: Vec<f64> = self.knobs.variables.iter().map(|v| v.nominal).collect();
-        let cut = &behaviour.cut;
+        let paths = &behaviour.mechanism.paths;
         let at = |x: &[f64]| {
             let mut changed = design.clone();
             self.knobs.apply(x, &mut changed);
-            forces(&changed, cut, behaviour.window_m)
+            forces(&changed, paths, behaviour.window_m)
         };
         let [mean, deviation] = at(&nominal);
         let one = |(i, label): (usize, &String)| {
@@ -85,8 +84,8 @@ impl Scatter {
 
 /// Mean of the forces up and down, N, and their largest relative deviation from what is required; without a requirement half the width of
 /// the band that they need.
-fn forces(design: &Design, cut: &Arc<Cut>, window_m: [f64; 2]) -> [f64; 2] {
-    let behaviour = Behaviour::sampled(design, Arc::clone(cut), window_m, INTERVALS, INTERVALS);
+fn forces(design: &Design, paths: &[SidePath; SIDES], window_m: [f64; 2]) -> [f64; 2] {
+    let behaviour = Behaviour::sampled(design, paths, window_m, INTERVALS, INTERVALS);
     let measured: Measured = measure(design, &behaviour);
     let get = |name: &str| measured.get(name).unwrap_or(f64::NAN);
     let deviation = measured.get("force_deviation").unwrap_or_else(|| get("force_spread"));

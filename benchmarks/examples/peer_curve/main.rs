@@ -8,9 +8,14 @@
 //! METHOD is `general` (`trace`), `fast` (one `CurveSolver` for all calls), `fast-new` (made anew for each), or `gradient` (`trace` and
 //! the derivatives of all forces).
 //!
+//! METHOD `motion-reduced` or `motion-multibody` with MODEL `motion` is the cam in motion (`motion.rs`); ACCURACY then says nothing: both
+//! are exact at every instant.
+//!
 //! MODEL is `inextensible`, `EA` (bending and stretching) or `EA+GA` (shear as well). The mechanism is the example project of
 //! Lan, Wang & Chen 2010, Table 3; forces are those of the drawn half.
 #![allow(clippy::print_stdout, reason = "its output is its purpose")]
+
+mod motion;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -34,6 +39,10 @@ fn main() -> Result<(), String> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let result = match words.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["problem"] => problem(),
+        [method, "motion", _, samples] => {
+            let samples = samples.parse().map_err(|_| format!("{samples} is not a number of samples"))?;
+            measure_motion(method, samples)?
+        }
         [method, model, accuracy, samples] => {
             let accuracy = accuracy.parse().map_err(|_| format!("{accuracy} is not an accuracy"))?;
             let samples = samples.parse().map_err(|_| format!("{samples} is not a number of samples"))?;
@@ -101,7 +110,8 @@ fn problem() -> Value {
         })
     };
     let section = design.network.beams[0].section;
-    let converged: Map<String, Value> = MODELS
+    let motion = motion::Case::new();
+    let mut converged: Map<String, Value> = MODELS
         .iter()
         .map(|&model| {
             let case = Case::new(model, CONVERGED).expect("a model");
@@ -109,7 +119,9 @@ fn problem() -> Value {
             (model.to_owned(), json!({ "force_n": forces(&path), "jacobian": jacobian(&path, &case.network) }))
         })
         .collect();
+    converged.insert("motion".into(), json!({ "force_n": motion.reduced() }));
     json!({
+        "motion": motion.problem(),
         "nodes_m": nodes,
         "beams": design.network.beams.iter().map(beam).collect::<Vec<_>>(),
         "load_node": names[design.load_node], "direction": design.direction, "stations_m": stations(&design),
@@ -151,6 +163,19 @@ fn measure(method: &str, case: &Case, samples: usize) -> Result<Value, String> {
     if method == "gradient" {
         result.insert("jacobian".into(), json!(jacobian(&case.trace(), &case.network)));
     }
+    result.insert("version".into(), json!(concat!("forcewright ", env!("CARGO_PKG_VERSION"))));
+    Ok(result.into())
+}
+
+fn measure_motion(method: &str, samples: usize) -> Result<Value, String> {
+    let case = motion::Case::new();
+    let work: fn(&motion::Case) -> Vec<f64> = match method {
+        "motion-reduced" => motion::Case::reduced,
+        "motion-multibody" => motion::Case::multibody,
+        _ => return Err(format!("{method} is not one of motion-reduced, motion-multibody")),
+    };
+    let mut result = timed(samples, || black_box(work(black_box(&case))));
+    result.insert("force_n".into(), json!(work(&case)));
     result.insert("version".into(), json!(concat!("forcewright ", env!("CARGO_PKG_VERSION"))));
     Ok(result.into())
 }
