@@ -3,21 +3,21 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use forcewright::base::maths;
 use forcewright::{Choices, DiskFiles, Loaded, SynthesisTask, Synthesised};
 
-/// A permuted congruential sequence, O'Neill 2014: the same sets on every machine.
+/// `SplitMix64` of Steele, Lea & Flood 2014: the same sets on every machine.
 struct Sequence(u64);
 
 impl Sequence {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let word = (((self.0 >> 18) ^ self.0) >> 27) as u32;
-        f64::from(word.rotate_right((self.0 >> 59) as u32)) / 4_294_967_296.0
-    }
-
     /// Between two values, spread evenly over their ratio.
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.unit())
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        let unit = f64::from(u32::try_from((z ^ (z >> 31)) >> 32).expect("32 bits")) / 4_294_967_296.0;
+        low * maths::powf(high / low, unit)
     }
 }
 
@@ -55,7 +55,7 @@ fn found(text: &str) -> Synthesised {
 
 /// Rate of a helical spring of steel wire, G d⁴/(8 D³ n), with G of EN 10270-1.
 fn rate_n_per_m([wire_m, mean_m, coils]: [f64; 3]) -> f64 {
-    81.5e9 * wire_m.powi(4) / (8.0 * mean_m.powi(3) * coils)
+    81.5e9 * maths::powi(wire_m, 4) / (8.0 * maths::powi(mean_m, 3) * coils)
 }
 
 /// Sets that are met; of the others the limit that blocks is named, with a value that was tried.
@@ -77,7 +77,6 @@ fn solved(sets: &[String]) -> usize {
         let wound = rate_n_per_m([state[5], state[6], state[7]]);
         assert!((wound / state[1] - 1.0).abs() < 1e-9, "{wound} instead of {}", state[1]);
     }
-    println!("{met} of {} sets are met", sets.len());
     met
 }
 

@@ -4,6 +4,7 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::units::{Dimension, format_si};
 use forcewright_contract::data::{Cell, Column, DataFile, rows};
 use forcewright_contract::describe::{Located, Section};
+use forcewright_contract::metrics;
 use forcewright_contract::objective::{Goal, Way, goal_of};
 use forcewright_contract::read::deferred_quantities;
 use forcewright_contract::studies::Objective;
@@ -338,8 +339,9 @@ const KEPT: [&str; 10] = [
 /// Requirements that a search does not see: they are checked at its end.
 pub(crate) fn not_kept(design: &Design) -> Vec<&'static str> {
     let limits = design.requirements.iter().flat_map(|r| &r.limits);
-    let limits =
-        limits.map(|l| l.name::<CompliantMetrics>()).filter(|name| !KEPT.contains(name) || (*name == "mass" && mass_kg(design).is_none()));
+    let limits = limits
+        .map(metrics::Limit::name::<CompliantMetrics>)
+        .filter(|name| !KEPT.contains(name) || (*name == "mass" && mass_kg(design).is_none()));
     limits.chain(design.requirements.iter().flat_map(Requirements::endurance)).collect()
 }
 
