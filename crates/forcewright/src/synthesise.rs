@@ -30,6 +30,8 @@ const NEARLY_MET: f64 = 0.1;
 const MOST_SEARCHES: usize = 2;
 /// How often a loosened limit is loosened further where the nearest value does not stand the full analysis, and by how much each time.
 const SLACKS: [f64; 4] = [0.0, 0.03, 0.08, 0.2];
+/// A margin no larger is that of a limit met exactly.
+const TAKEN_OVER: f64 = 1e-9;
 
 /// Where a synthesis stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +78,8 @@ impl Designed {
     /// The least margin of its requirements, relative; `None` where none has one.
     pub fn margin(&self) -> Option<f64> {
         let checks = self.report.outcome.checks.iter().filter(|c| c.required);
-        checks.filter_map(|c| c.margin).reduce(f64::min)
+        // What a design takes over as it is asked for, such as a stroke, has no margin worth a word.
+        checks.filter_map(|c| c.margin).filter(|margin| margin.abs() > TAKEN_OVER).reduce(f64::min)
     }
 }
 
