@@ -125,6 +125,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0610", "what motions need"),
     ("E0611", "what motions need"),
     ("E0612", "what motions need"),
+    ("E0616", "a study: tests of the family"),
     ("E0630", "what a synthesis needs"),
     ("E0631", "what a synthesis needs"),
     ("E0632", "measured points: tests of the family"),
@@ -134,7 +135,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0604", "a warning of the analysis"),
     ("W0605", "a warning of the analysis"),
     ("W0606", "a warning of the analysis"),
-    ("W0607", "a warning of the analysis"),
+    ("W0608", "a warning of the analysis"),
 ];
 
 /// Edits of the cam example and the code that each must bring.
@@ -145,6 +146,20 @@ const CAM_EDITS: &[(&str, &str, &str)] = &[
     ("E0606", "window = [\"5 mm\", \"230 mm\"]", "window = [\"5 mm\", \"500 mm\"]"),
     ("E0607", "roller_diameter = \"32 mm ± 0.01 mm\"", "roller_diameter = \"150 mm\""),
 ];
+
+/// Edits of the torque cam and the code that each must bring.
+const TORQUE_EDITS: &[(&str, &str, &str)] = &[
+    ("E0613", "turn = \"120 deg\"\nrolling", "turn = \"120 deg\"\nbrace_length = \"200 mm\"\nrolling"),
+    (
+        "E0614",
+        "roller_diameter = \"20 mm\"\ncam_thickness = \"10 mm\"\nturn = \"120 deg\"",
+        "roller_diameter = \"33 mm\"\ncam_thickness = \"10 mm\"\nturn = \"170 deg\"",
+    ),
+    ("E0615", "shaft_diameter = \"12 mm\"", "shaft_diameter = \"60 mm\""),
+];
+
+/// The torque cam.
+const TORQUE_CAM: &str = include_str!("../../../examples/cam/torque-cam.toml");
 
 /// The cam example.
 const CAM: &str = include_str!("../../../examples/cam/no-undercut.toml");
@@ -180,9 +195,10 @@ fn every_code_is_met_and_every_code_met_is_explained() {
         }
         met.extend(found);
     }
-    for (code, from, to) in CAM_EDITS {
-        assert!(CAM.contains(from), "{from} is not in the example");
-        let found = codes_of(&CAM.replacen(from, to, 1), &Choices::default());
+    let cams = CAM_EDITS.iter().map(|edit| (CAM, edit)).chain(TORQUE_EDITS.iter().map(|edit| (TORQUE_CAM, edit)));
+    for (example, (code, from, to)) in cams {
+        assert!(example.contains(from), "{from} is not in the example");
+        let found = codes_of(&example.replacen(from, to, 1), &Choices::default());
         if !found.contains(code) {
             wrong.push(format!("{code}: {to} brings {found:?}"));
         }

@@ -47,6 +47,7 @@ pub const EXAMPLES: &[Example] = examples![
     "cam/measured-profile",
     "cam/bench-press",
     "cam/weight-release",
+    "cam/torque-cam",
 ];
 
 macro_rules! data {

@@ -16,9 +16,9 @@ use crate::release::{End, Release, Released, release};
 /// Stations over the stroke, for curves and pictures.
 pub(crate) const STATIONS: usize = 480;
 /// Panels of the window, for means; extremes are taken at their ends and middles.
-const PANELS: usize = 400;
+pub(crate) const PANELS: usize = 400;
 /// How far above the start of its travel a slider is taken where the start itself is singular, relative to the stroke.
-const JUST_ABOVE: f64 = 1e-6;
+pub(crate) const JUST_ABOVE: f64 = 1e-6;
 
 /// Forces at a travel.
 #[derive(Clone, Copy, Debug)]
@@ -113,26 +113,36 @@ impl Behaviour {
 
     /// Mean and standard deviation over the window, by Simpson's rule.
     pub fn moments(&self, value: impl Fn(&Station) -> f64) -> [f64; 2] {
-        let n = self.window.len() - 1;
-        let weight = |i: usize| {
-            if i == 0 || i == n {
-                1.0
-            } else if i % 2 == 1 {
-                4.0
-            } else {
-                2.0
-            }
-        };
-        let total = 3.0 * n as f64;
-        let mean = self.window.iter().enumerate().map(|(i, s)| weight(i) * value(s)).sum::<f64>() / total;
-        let spread = self.window.iter().enumerate().map(|(i, s)| weight(i) * (value(s) - mean) * (value(s) - mean)).sum::<f64>() / total;
-        [mean, spread.max(0.0).sqrt()]
+        moments(&self.window, value)
     }
 
     /// Smallest and largest value over some stations.
     pub fn extent(stations: &[Station], value: impl Fn(&Station) -> f64) -> [f64; 2] {
-        stations.iter().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+        extent(stations, value)
     }
+}
+
+/// Mean and standard deviation over stations at even distances, an odd number of them, by Simpson's rule.
+pub(crate) fn moments<S>(stations: &[S], value: impl Fn(&S) -> f64) -> [f64; 2] {
+    let n = stations.len() - 1;
+    let weight = |i: usize| {
+        if i == 0 || i == n {
+            1.0
+        } else if i % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        }
+    };
+    let total = 3.0 * n as f64;
+    let mean = stations.iter().enumerate().map(|(i, s)| weight(i) * value(s)).sum::<f64>() / total;
+    let spread = stations.iter().enumerate().map(|(i, s)| weight(i) * (value(s) - mean) * (value(s) - mean)).sum::<f64>() / total;
+    [mean, spread.max(0.0).sqrt()]
+}
+
+/// Smallest and largest value over some stations.
+pub(crate) fn extent<S>(stations: &[S], value: impl Fn(&S) -> f64) -> [f64; 2] {
+    stations.iter().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
 /// Lets the slider go. Its stops are the ends of the stroke; the one at the start lies where the rollers come to it, and a little above: on
@@ -232,7 +242,13 @@ impl Measured {
         self.values.get(index).copied().flatten()
     }
 
-    fn set(&mut self, name: &str, value: impl Into<Option<f64>>) {
+    /// Nothing measured yet.
+    pub(crate) fn none() -> Self {
+        Self { values: vec![None; METRICS.len()] }
+    }
+
+    /// Notes a metric; one that is not a number is absent.
+    pub(crate) fn set(&mut self, name: &str, value: impl Into<Option<f64>>) {
         if let Some(index) = METRICS.iter().position(|m| m.name == name) {
             self.values[index] = value.into().filter(|v| v.is_finite());
         }
@@ -241,7 +257,7 @@ impl Measured {
 
 /// Every metric that the behaviour has.
 pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
-    let mut m = Measured { values: vec![None; METRICS.len()] };
+    let mut m = Measured::none();
     geometry(design, behaviour, &mut m);
     mass(design, &mut m);
     // The rest is about the whole stroke: a mechanism that does not reach its end has no such numbers.
@@ -258,28 +274,41 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     m
 }
 
-/// Pressure between rollers and cam, and how long the surfaces endure it.
+/// Pressure between rollers and cam over the window.
 fn pressure(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
+    let sense = behaviour.mechanism.springs.sense();
+    let loads = behaviour.window.iter().flat_map(|station| {
+        [0, 1].map(|side: usize| {
+            let normal = [station.up, station.down].iter().map(|i| i.sides[side].normal_n).fold(0.0, f64::max);
+            [normal, curvature_per_m(&station.pose.places[side], sense)]
+        })
+    });
+    contact_pressure(&design.materials, design.built.thickness_m, behaviour.mechanism.roller_m, loads, m);
+}
+
+/// Largest pressure between rollers of a radius and a cam of a width, and how long the surfaces endure it, from normal forces and the
+/// curvature of the path at each.
+pub(crate) fn contact_pressure(
+    materials: &[Option<crate::design::Material>; 2],
+    width_m: Option<f64>,
+    r: f64,
+    loads: impl Iterator<Item = [f64; 2]>,
+    m: &mut Measured,
+) {
     let solid = |material: &Option<crate::design::Material>| {
         let material = material.as_ref()?;
         Some(Solid { young_modulus_pa: material.young_pa?, poisson_ratio: material.poisson? })
     };
-    let [cam, roller] = &design.materials;
-    let (Some(solids), Some(width_m)) = (solid(cam).zip(solid(roller)), design.built.thickness_m) else { return };
-    let sense = behaviour.mechanism.springs.sense();
-    let r = behaviour.mechanism.roller_m;
+    let [cam, roller] = materials;
+    let (Some(solids), Some(width_m)) = (solid(cam).zip(solid(roller)), width_m) else { return };
     let mut most = 0.0_f64;
-    for station in &behaviour.window {
-        for side in 0..SIDES {
-            let curvature = curvature_per_m(&station.pose.places[side], sense);
-            // The cam's own radius is that of the path less the roller's; a straight path has a straight cam.
-            let own_m = if curvature.abs() < 1e-9 { f64::INFINITY } else { 1.0 / curvature - r };
-            let normal = [station.up, station.down].iter().map(|i| i.sides[side].normal_n).fold(0.0, f64::max);
-            match line_contact(normal / width_m, [own_m, r], [solids.0, solids.1]) {
-                Ok(contact) => most = most.max(contact.pressure_pa),
-                // A corner, or no line of contact: nothing is said.
-                Err(_) => return,
-            }
+    for [normal, curvature] in loads {
+        // The cam's own radius is that of the path less the roller's; a straight path has a straight cam, a hollow one a hollow cam.
+        let own_m = if curvature.abs() < 1e-9 { f64::INFINITY } else { 1.0 / curvature - r };
+        match line_contact(normal / width_m, [own_m, r], [solids.0, solids.1]) {
+            Ok(contact) => most = most.max(contact.pressure_pa),
+            // A corner, or no line of contact: nothing is said.
+            Err(_) => return,
         }
     }
     m.set("hertz_pressure_max", most);
@@ -319,7 +348,7 @@ fn extents(behaviour: &Behaviour, m: &mut Measured) {
 
 /// Those that studies of many designs take as they are: all but what follows from the forces over the window.
 pub(crate) fn measure_scalars(design: &Design, behaviour: &Behaviour) -> Measured {
-    let mut m = Measured { values: vec![None; METRICS.len()] };
+    let mut m = Measured::none();
     geometry(design, behaviour, &mut m);
     mass(design, &mut m);
     extents(behaviour, &mut m);

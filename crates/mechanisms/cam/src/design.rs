@@ -1,8 +1,9 @@
 //! From what was typed to a design: references checked, catalogue values in place, SI numbers.
 
-mod motion;
-mod profile;
-mod springs;
+mod kind;
+pub(crate) mod motion;
+pub(crate) mod profile;
+pub(crate) mod springs;
 
 use std::sync::Arc;
 
@@ -23,6 +24,8 @@ use crate::release::Release;
 use crate::spec::{self, Spec};
 use crate::springs::{Bank, Spring};
 use crate::study::Scatter;
+pub(crate) use kind::of_disc;
+use profile::{LawSlots, LawWords};
 
 /// A design, ready to be analysed. SI units.
 #[derive(Clone, Debug)]
@@ -137,6 +140,8 @@ pub struct DisplayUnits {
     pub length: Unit,
     /// Forces.
     pub force: Unit,
+    /// Torques.
+    pub torque: Unit,
     /// Spring rates.
     pub stiffness: Unit,
     /// Angles.
@@ -189,7 +194,7 @@ impl Design {
             springs: Bank::new(built.springs.clone(), built.extension),
             bodies: built.bodies,
             gravity_m_per_s2: built.gravity_m_per_s2,
-            rise_m: paths[0].cut().rise_m(0),
+            rise_m: paths[0].cut().rise_m(),
         }
     }
 }
@@ -213,12 +218,13 @@ pub(crate) fn si(slot: &Slot<Quantity>) -> Option<f64> {
     slot.as_ref().map(|l| l.value.si)
 }
 
-fn unit_or(slot: Option<&Located<Quantity>>, symbol: &str, dimension: Dimension) -> Unit {
+pub(crate) fn unit_or(slot: Option<&Located<Quantity>>, symbol: &str, dimension: Dimension) -> Unit {
     slot.map(|l| l.value.unit.clone()).or_else(|| Unit::parse(symbol).ok()).unwrap_or_else(|| Unit::si(dimension))
 }
 
 /// Reads a design from what was typed. Everything wrong goes into `diagnostics`.
 pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
+    kind::of_slider(spec, diagnostics);
     let materials = materials_of(spec, diagnostics);
     let extension = spec.design.arrangement.as_ref().is_none_or(|a| a.value == "tension");
     let purpose = profile::purpose_of(spec, extension, diagnostics);
@@ -336,7 +342,7 @@ fn random_of(spec: &Spec) -> Option<RandomProfile> {
 
 /// Both keys say the same thing.
 #[expect(clippy::ref_option, reason = "a slot as it stands in the description")]
-fn exclude<A, B>(first: &Slot<A>, second: &Slot<B>, names: [&str; 2], diagnostics: &mut Diagnostics) {
+pub(crate) fn exclude<A, B>(first: &Slot<A>, second: &Slot<B>, names: [&str; 2], diagnostics: &mut Diagnostics) {
     if let (Some(first), Some(second)) = (first, second) {
         diagnostics.push(
             Diagnostic::error("E0305", second.span, format!("`{}` and `{}` exclude each other", names[0], names[1]))
@@ -347,16 +353,16 @@ fn exclude<A, B>(first: &Slot<A>, second: &Slot<B>, names: [&str; 2], diagnostic
     }
 }
 
-fn missing(span: Span, what: &str, help: &str) -> Diagnostic {
+pub(crate) fn missing(span: Span, what: &str, help: &str) -> Diagnostic {
     Diagnostic::error("E0302", span, format!("{what} is missing")).label("from this table").help(help)
 }
 
-fn place_of<T>(section: &Section<T>) -> Span {
+pub(crate) fn place_of<T>(section: &Section<T>) -> Span {
     section.present.as_ref().map(|p| p.span).unwrap_or_default()
 }
 
 /// The arm of the rolling resistance, m; without one there is no friction.
-fn rolling_arm(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<f64> {
+pub(crate) fn rolling_arm(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<f64> {
     let design = &spec.design;
     exclude(&design.rolling_arm, &design.rolling_friction, ["rolling_arm", "rolling_friction"], diagnostics);
     let radius = 0.5 * si(&design.roller_diameter)?;
@@ -365,47 +371,87 @@ fn rolling_arm(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<f64> {
 
 fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Requirements> {
     let requirements = &spec.requirements;
-    requirements.present.as_ref()?;
-    exclude(&requirements.profile, &requirements.profile_file, ["profile", "profile_file"], diagnostics);
-    let profile = profile::law_of(&requirements.profile, &requirements.profile_file, diagnostics);
-    let nominal = &requirements.force.nominal;
-    let given = requirements.profile.is_some() || requirements.profile_file.is_some();
-    if let (true, Some(nominal)) = (given, nominal) {
+    let wanted = Wanted {
+        slots: LawSlots { level: &requirements.force.nominal, typed: &requirements.profile, file: &requirements.profile_file },
+        words: &profile::FORCE,
+        present: requirements.force.present.as_ref().map(|p| p.span),
+        band: &requirements.force.band,
+        total: &requirements.stroke,
+        keys: ["force", "profile", "profile_file"],
+        example: "50 N",
+    };
+    required(spec, &wanted, diagnostics)
+}
+
+/// What a kind of cam must do, as typed.
+pub(crate) struct Wanted<'a> {
+    pub slots: LawSlots<'a>,
+    pub words: &'a LawWords,
+    /// Where the table of level and band begins.
+    pub present: Option<Span>,
+    pub band: &'a Slot<Quantity>,
+    /// Travel or turn that is needed.
+    pub total: &'a Slot<Quantity>,
+    /// Of the table, the profile and its file.
+    pub keys: [&'static str; 3],
+    /// A level.
+    pub example: &'static str,
+}
+
+/// Requirements of either kind.
+pub(crate) fn required(spec: &Spec, wanted: &Wanted<'_>, diagnostics: &mut Diagnostics) -> Option<Requirements> {
+    spec.requirements.present.as_ref()?;
+    let [table, key, file] = wanted.keys;
+    let Wanted { slots, words, .. } = wanted;
+    exclude(slots.typed, slots.file, [key, file], diagnostics);
+    let profile = profile::law_of(slots.typed, slots.file, words, diagnostics);
+    let given = slots.typed.is_some() || slots.file.is_some();
+    if let (true, Some(nominal)) = (given, slots.level) {
         diagnostics.push(
             Diagnostic::error("E0305", nominal.span, "`nominal` and a profile exclude each other").label("one level").help("keep one"),
         );
     }
-    let level = profile.or_else(|| nominal.as_ref().map(|n| ForceLaw::constant(n.value.si)));
+    let level = profile.or_else(|| slots.level.as_ref().map(|n| ForceLaw::constant(n.value.si)));
     let sound = !diagnostics.has_errors();
-    let band = si(&requirements.force.band);
-    if let (true, Some(section), None) = (sound, &requirements.force.present, &level) {
-        diagnostics.push(missing(section.span, "`nominal`", "give `nominal = \"50 N\"`, or a `profile` in `[requirements]`"));
+    let band = si(wanted.band);
+    if let (true, Some(span), None) = (sound, wanted.present, &level) {
+        let help = format!("give `nominal = \"{}\"`, or a `{key}` in `[requirements]`", wanted.example);
+        diagnostics.push(missing(span, "`nominal`", &help));
     }
-    if let (true, Some(located), None) = (sound, &requirements.profile, band) {
-        diagnostics.push(missing(located.span, "how far the force may be from this profile", "add `force = { band = \"2 %\" }`"));
+    if let (true, Some(located), None) = (sound, slots.typed, band) {
+        let what = format!("how far the {table} may be from this profile");
+        diagnostics.push(missing(located.span, &what, &format!("add `{table} = {{ band = \"2 %\" }}`")));
     }
     Some(Requirements {
         force: level.zip(band),
-        stroke_m: si(&requirements.stroke),
-        hysteresis: si(&requirements.hysteresis),
-        limits: requirements.limits.resolve(diagnostics),
+        stroke_m: si(wanted.total),
+        hysteresis: si(&spec.requirements.hysteresis),
+        limits: spec.requirements.limits.resolve(diagnostics),
     })
 }
 
 fn window_of(spec: &Spec, purpose: &Purpose, diagnostics: &mut Diagnostics) -> Option<[f64; 2]> {
-    let window = spec.requirements.window.as_ref()?;
-    let [from, to] = [window.value[0].si, window.value[1].si];
-    let stroke = purpose.stroke_m * (1.0 + 1e-9);
-    if from < to && to <= stroke {
-        return Some([from, to.min(purpose.stroke_m)]);
+    let words = ["the stroke", "the travel of the slider", "travel"];
+    window_within(&spec.requirements.window, (&spec.design.stroke, purpose.stroke_m), words, diagnostics)
+}
+
+/// E0606: a window lies in the whole, which is called by the first word, in what the second says; the third is what it is made of.
+#[expect(clippy::ref_option, reason = "slots as they stand in the description")]
+pub(crate) fn window_within(
+    window: &Slot<[Quantity; 2]>,
+    (typed, whole): (&Slot<Quantity>, f64),
+    [name, place, kind]: [&str; 3],
+    diagnostics: &mut Diagnostics,
+) -> Option<[f64; 2]> {
+    let window = window.as_ref()?;
+    let [from, to] = window.value.each_ref().map(|q| q.si);
+    if from < to && to <= whole * (1.0 + 1e-9) {
+        return Some([from, to.min(whole)]);
     }
     diagnostics.push(
-        Diagnostic::error("E0606", window.span, "the window does not lie in the stroke")
-            .label("from and to, in the travel of the slider")
-            .help(format!(
-                "give a smaller and a larger travel up to {}",
-                spec.design.stroke.as_ref().map_or_else(String::new, |s| s.value.to_string())
-            )),
+        Diagnostic::error("E0606", window.span, format!("the window does not lie in {name}"))
+            .label(format!("from and to, in {place}"))
+            .help(format!("give a smaller and a larger {kind} up to {}", typed.as_ref().map_or_else(String::new, |s| s.value.to_string()))),
     );
     None
 }
@@ -455,6 +501,7 @@ fn display_units(spec: &Spec) -> DisplayUnits {
         travel: unit_or(design.stroke.as_ref(), "mm", Dimension::Length),
         length: unit_or(design.brace_length.as_ref(), "mm", Dimension::Length),
         force: unit_or(force, "N", Dimension::Force),
+        torque: unit_or(None, "N*m", Dimension::Torque),
         stiffness: unit_or(rate, "N/mm", Dimension::Stiffness),
         angle: unit_or(spec.errors.tilt.as_ref().filter(|t| t.origin == Origin::File), "deg", Dimension::Angle),
         time: unit_or(spec.motion.duration.as_ref(), "s", Dimension::Time),
@@ -462,7 +509,7 @@ fn display_units(spec: &Spec) -> DisplayUnits {
 }
 
 /// Materials of cam and roller, filled from the catalogue.
-fn materials_of(spec: &mut Spec, diagnostics: &mut Diagnostics) -> [Option<Material>; 2] {
+pub(crate) fn materials_of(spec: &mut Spec, diagnostics: &mut Diagnostics) -> [Option<Material>; 2] {
     let spec::Materials { cam, roller } = &mut spec.material.body;
     [cam, roller].map(|section| {
         section.present.as_ref()?;

@@ -74,6 +74,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "After a release the hanging mass pulls the slider by a cable. Where the slider would accelerate faster than the mass falls, the cable is slack and the mass falls freely; where it becomes taut again both go on with one speed, the momentum is kept and energy is lost (`docs/theory/cam.md`, eq. 12). The motion is computed through all of it; the jerks are hard on a cable.",
     ),
     code(
+        "CAM014",
+        "torque band",
+        "Torque cam: the torque on the shaft, turned against the springs and back, stays within `requirements.torque.band` of the required level, or of the required profile, over `turn_window`. The value is the largest |T/T_required − 1|.\n\nRolling friction spreads the two directions apart by about μ(1 + tan²φ)/tan φ on either side, φ the pressure angle (`docs/theory/cam.md`, eq. 17): least where the path rises at 45°.",
+    ),
+    code(
+        "CAM015",
+        "turn",
+        "Torque cam: the turn for which the disc is cut, as far as the rollers stand on it, against `requirements.turn`.",
+    ),
+    code(
         "E0601",
         "the path leaves the reach of a brace",
         "A roller is never further from the axis than its brace is long. With soft springs, or much force over a long stroke, it would have to be. The message names the stroke up to which there is a path.",
@@ -130,6 +140,26 @@ pub(crate) const CODES: &[Explanation] = &[
         "The motion after a release is computed with one freedom, along the guide. A slider without a guide can be moved along its travel by a law of time; then its way sideways is computed.",
     ),
     code(
+        "E0613",
+        "a key of the other kind of cam",
+        "There are two kinds of cam. With a table `[design.disc]` it is a torque cam: a disc on a shaft with `turn`, `for_torque`, `requirements.torque`. Without it, rollers on straight cams move a slider: `brace_length`, `stroke`, `for_force`, `requirements.force`. A key of the other kind would have no effect, and is refused. Torque cams have no release, no errors of making and no weight.",
+    ),
+    code(
+        "E0614",
+        "the outline of the disc does not close",
+        "Two equal lobes share a whole turn. From the end of a lobe the outline goes over a nose and straight into a seat, in which the roller of the other lobe rests at the start; no roller uses that part, but it needs room beside the rollers. The message names the largest turn that leaves it.",
+    ),
+    code(
+        "E0615",
+        "the shaft does not fit",
+        "The hole of `design.disc.shaft_diameter` must lie inside the outline of the disc, which comes nearest to the middle at the seats of the rollers or on the straight part before them. The metric `hub_wall` says how much is left.",
+    ),
+    code(
+        "E0616",
+        "a study that does not know torque cams",
+        "`optimise` and `synthesise` compute cams with a slider only. `solve` analyses a torque cam, `export` writes its parts, `tolerance` computes its scatter, and `sweep` analyses any number of them over any keys.",
+    ),
+    code(
         "E0630",
         "a synthesis needs more",
         "A synthesis of a cam mechanism needs the force (`requirements.force` with its band, or a profile) and the stroke (`requirements.stroke`). What it may use stands in `[synthesise]`: the room, the springs of a catalogue, rollers, the rolling resistance.",
@@ -160,11 +190,6 @@ pub(crate) const CODES: &[Explanation] = &[
         "The force across the travel grows with the distance from the axis in the direction of that distance: a slider without a guide leaves the axis. Guides carry `guide_force_max`.",
     ),
     code(
-        "W0607",
-        "unequal shares make the springs slant",
-        "`design.profile.share_right` lets one side make more of the springs' deformation. The rollers then stand at different heights, and springs between their axles slant. The cam is cut as if they did not: the force differs from the one wanted, by a per cent at a share of 0.4. The analysis has the slanting springs.",
-    ),
-    code(
         "W0606",
         "the window reaches beyond what was measured",
         "A measured profile is known where its points are. Outside, the deviation of the last point is kept, and the force is that of a cam that is shifted there: it says nothing about the cam that was made. Measure the whole profile, or choose a shorter `requirements.window`.",
@@ -173,6 +198,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0605",
         "points that do not belong to the profile",
         "Measured points farther than 4.685 robust standard deviations from the design are taken as outliers: dust, burrs, slips of the probe. They do not count. The report lists how many, and how far the rest is from the design.",
+    ),
+    code(
+        "W0608",
+        "friction holds the disc",
+        "Where the path of a torque cam rises less than friction takes (tan φ ≤ μ), the springs do not turn the disc back by themselves: the torque on the way down is not above zero. Less rolling friction, a smaller `start_radius` or more torque help.",
     ),
     code(
         "W0604",

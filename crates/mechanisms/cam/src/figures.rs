@@ -7,6 +7,7 @@ use forcewright_model::{Axis, BarRow, Bars, Branch, Curve, Figure, FigureContent
 
 use crate::analysis::{Behaviour, Measured, Station, pressure_angle};
 use crate::design::Design;
+use crate::law::ForceLaw;
 use crate::motion::Moment;
 use crate::path::curvature_per_m;
 use crate::scene::{comb, film};
@@ -165,7 +166,7 @@ fn series(behaviour: &Behaviour, label: &str, stroke: Stroke, value: impl Fn(&St
     Series { label: label.to_owned(), x, y, stroke }
 }
 
-fn plot(x: Axis, y: Axis, series: Vec<Series>) -> Plot {
+pub(crate) fn plot(x: Axis, y: Axis, series: Vec<Series>) -> Plot {
     Plot { x, y, series, bands: Vec::new(), levels: Vec::new(), spans: Vec::new(), markers: Vec::new(), from_zero: false }
 }
 
@@ -178,6 +179,11 @@ fn shown_n(design: &Design, behaviour: &Behaviour) -> [f64; 2] {
     if let Some((law, band)) = design.requirements.as_ref().and_then(|r| r.force.as_ref()) {
         all.extend(behaviour.window.iter().map(|s| law.force_n(s.travel_m)[0]).flat_map(|f| [f * (1.0 - band), f * (1.0 + band)]));
     }
+    room_for(&all)
+}
+
+/// What has to be seen, and some room.
+pub(crate) fn room_for(all: &[f64]) -> [f64; 2] {
     let finite = all.iter().filter(|f| f.is_finite());
     let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(*f), b.max(*f)]);
     if low > high {
@@ -189,7 +195,7 @@ fn shown_n(design: &Design, behaviour: &Behaviour) -> [f64; 2] {
 }
 
 /// A line from the window outwards, as far as it stays within the picture: at the start of an undercut cam the force falls far below.
-fn within(line: Series, window_m: [f64; 2], [low, high]: [f64; 2]) -> Series {
+pub(crate) fn within(line: Series, window_m: [f64; 2], [low, high]: [f64; 2]) -> Series {
     let points: Vec<[f64; 2]> = line.x.iter().zip(&line.y).map(|(x, y)| [*x, *y]).collect();
     let first = points.partition_point(|p| p[0] < window_m[0]).min(points.len());
     let last = points.partition_point(|p| p[0] <= window_m[1]).max(first);
@@ -271,19 +277,25 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
 /// The force that is required, as a band or, where it is not the same everywhere, as its edges.
 fn require(design: &Design, behaviour: &Behaviour, plot: &mut Plot) {
     let Some((law, band)) = design.requirements.as_ref().and_then(|r| r.force.as_ref()) else { return };
+    let travels: Vec<f64> = behaviour.window.iter().map(|s| s.travel_m).collect();
+    require_law((law, *band), &travels, behaviour.window_m, &design.units.force, plot);
+}
+
+/// The same of any law, at places of a window.
+pub(crate) fn require_law((law, band): (&ForceLaw, f64), places: &[f64], window: [f64; 2], unit: &Unit, plot: &mut Plot) {
     let percent = format_number(100.0 * band, 3);
     if law.is_constant() {
         let [level, _] = law.force_n(0.0);
         plot.bands.push(HorizontalBand {
             from: level * (1.0 - band),
             to: level * (1.0 + band),
-            extent: Some((behaviour.window_m[0], behaviour.window_m[1])),
-            label: format!("{} ± {percent} % (required)", format_si(level, &design.units.force, 4)),
+            extent: Some((window[0], window[1])),
+            label: format!("{} ± {percent} % (required)", format_si(level, unit, 4)),
         });
         return;
     }
     for (sign, label) in [(1.0 + band, format!("required + {percent} %")), (1.0 - band, format!("required − {percent} %"))] {
-        let points = behaviour.window.iter().map(|s| (s.travel_m, sign * law.force_n(s.travel_m)[0]));
+        let points = places.iter().map(|s| (*s, sign * law.force_n(*s)[0]));
         let (x, y) = points.unzip();
         plot.series.push(Series { label, x, y, stroke: Stroke::Limit });
     }

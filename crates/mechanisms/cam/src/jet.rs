@@ -6,6 +6,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use forcewright_base::maths;
+
 /// A value with its first three derivatives divided by their factorials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet(pub(crate) [f64; 4]);
@@ -45,6 +47,20 @@ impl Jet {
         let r1 = a[1] * half;
         let r2 = (a[2] - r1 * r1) * half;
         Self([r, r1, r2, (a[3] - 2.0 * r1 * r2) * half])
+    }
+
+    /// Sine and cosine of an angle in rad.
+    pub fn sin_cos(self) -> [Self; 2] {
+        let Self(a) = self;
+        let (s, c) = maths::sin_cos(a[0]);
+        let (mut sine, mut cosine) = ([s, 0.0, 0.0, 0.0], [c, 0.0, 0.0, 0.0]);
+        // n sₙ = Σ k aₖ cₙ₋ₖ and n cₙ = −Σ k aₖ sₙ₋ₖ, from s′ = a′c and c′ = −a′s.
+        for n in 1..4 {
+            let sum = |other: &[f64; 4]| (1..=n).map(|k| k as f64 * a[k] * other[n - k]).sum::<f64>() / n as f64;
+            let (up, down) = (sum(&cosine), sum(&sine));
+            (sine[n], cosine[n]) = (up, -down);
+        }
+        [Self(sine), Self(cosine)]
     }
 }
 
@@ -125,6 +141,20 @@ impl Add<f64> for Jet {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// sin²+cos² = 1 in every order, and the derivatives of sin(x²) by hand.
+    #[test]
+    fn derivatives_of_sine_and_cosine() {
+        let x = Jet::variable(0.6);
+        let [s, c] = (x * x).sin_cos();
+        let one = s * s + c * c;
+        assert!((one.0[0] - 1.0).abs() < 1e-15 && one.0[1..].iter().all(|e| e.abs() < 1e-15), "{one:?}");
+        let (sin, cos) = maths::sin_cos(0.36);
+        let by_hand = [sin, 1.2 * cos, 2.0 * cos - 1.44 * sin, -7.2 * sin - 1.728 * cos];
+        for (order, expected) in by_hand.into_iter().enumerate() {
+            assert!((s.derivative(order) - expected).abs() < 1e-14, "{order}");
+        }
+    }
 
     /// Derivatives of √(1 + x²)/(2 + x) at x = 0.7 against those of the formula differentiated by hand.
     #[test]

@@ -62,6 +62,14 @@ impl Motion {
         Self { duration_s, ..*self }
     }
 
+    /// Direction, time, and travel, speed and acceleration at even times of each phase.
+    pub(crate) fn instants(&self) -> impl Iterator<Item = (Sense, f64, [f64; 3])> + '_ {
+        self.phases().into_iter().flat_map(move |phase| {
+            let time = move |i: usize| phase.start_s + phase.duration_s * i as f64 / phase.steps as f64;
+            (0..=phase.steps).map(move |i| (phase.sense, time(i), phase.at(self, time(i))))
+        })
+    }
+
     /// The phases in their order.
     fn phases(&self) -> Vec<Phase> {
         let forth = if self.rise_m >= 0.0 { Sense::Up } else { Sense::Down };

@@ -40,7 +40,7 @@ pub struct Making {
 const PROBES: usize = 2000;
 
 /// Why no finite elements of it are of use.
-const RIGID: &str = "the parts of a cam mechanism are taken as rigid";
+pub(crate) const RIGID: &str = "the parts of a cam mechanism are taken as rigid";
 
 /// Intervals between the places of a side to be measured.
 const INSPECTED: u32 = 24;
@@ -99,7 +99,7 @@ fn surface(design: &Design, path: &SidePath, lambda_m: f64) -> Oriented {
 }
 
 /// Distance of arcs from the exact profile at a place of it, along its normal outwards, m.
-fn deviation(arcs: &[(Vector, Segment)], near: &mut usize, place: &Oriented, normal: Vector) -> f64 {
+pub(crate) fn deviation(arcs: &[(Vector, Segment)], near: &mut usize, place: &Oriented, normal: Vector) -> f64 {
     // The profile is passed once, and so are the arcs: the piece moves on while its end lies behind.
     while *near + 1 < arcs.len() {
         let end = arcs[*near].1.end_m();
@@ -218,7 +218,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
             });
         }
     }
-    parts.push(roller(design, material(1), thickness_m));
+    parts.push(roller([design.cut_roller_m, design.making.pin_m, thickness_m], material(1), density(1)));
     parts.extend(braces(design));
     parts.push(pin(design, thickness_m));
     let checks = vec![chord_check(design, cost)];
@@ -410,15 +410,15 @@ fn mounting_holes(making: &Making, profiles: &[Drawn; SIDES]) -> Vec<Hole> {
         .to_vec()
 }
 
-fn roller(design: &Design, material: Option<String>, thickness_m: f64) -> Part {
-    let pin_m = design.making.pin_m;
+/// A roller of a radius, with a hole of a diameter, so thick.
+pub(crate) fn roller([radius_m, pin_m, depth_m]: [f64; 3], material: Option<String>, density_kg_per_m3: Option<f64>) -> Part {
     Part {
         name: "roller".to_owned(),
         title: "Roller (2)".to_owned(),
         material,
-        depth_m: thickness_m,
-        density_kg_per_m3: design.materials[1].as_ref().and_then(|m| m.density_kg_per_m3),
-        outline: Profile::circle([0.0; 2], design.cut_roller_m),
+        depth_m,
+        density_kg_per_m3,
+        outline: Profile::circle([0.0; 2], radius_m),
         cutouts: Vec::new(),
         fillets: None,
         trial: Err(RIGID.to_owned()),

@@ -61,7 +61,7 @@ pub struct SidePath {
 
 /// A circle that continues the path below its corner without a kink.
 #[derive(Clone, Copy, Debug)]
-struct Circle {
+pub(crate) struct Circle {
     /// λ where it begins, m.
     lambda_m: f64,
     /// The corner, m.
@@ -251,41 +251,52 @@ impl SidePath {
     #[inline]
     pub fn designed(&self, lambda_m: f64) -> Place {
         let p = self.cut.at(self.side, lambda_m);
-        let pick = |order: usize| [p.x.derivative(order), p.y.derivative(order)];
-        Place { at: pick(0), slope: pick(1), bend: pick(2) }
+        place([p.x, p.y])
     }
 
     /// The roller turns about the corner: the circle that continues the path without a kink. The corner lies where the profile with its
     /// errors ends, a roller's radius behind the path.
     fn circle_from(&self, lambda_m: f64) -> Circle {
-        let join = self.on_profile(lambda_m);
-        let [_, normal] = frame(&join, self.cut.purpose().springs.sense());
-        let radius = self.roller_m + self.swell_m;
-        let from = [radius * normal[0], radius * normal[1]];
-        let sign = (from[0] * join.slope[1] - from[1] * join.slope[0]).signum();
-        let centre = [join.at[0] - from[0], join.at[1] - from[1]];
-        Circle { lambda_m, centre, from, rate: length(join.slope) / radius * sign }
+        let sense = self.cut.purpose().springs.sense();
+        Circle::continuing(&self.on_profile(lambda_m), lambda_m, self.roller_m + self.swell_m, sense)
     }
 
     /// The path with a deviation along its normal, given with its derivatives over the arc length.
-    fn deviating(&self, lambda_m: f64, [e0, e1, e2]: [f64; 3]) -> Place {
+    fn deviating(&self, lambda_m: f64, error: [f64; 3]) -> Place {
         let p = self.cut.at(self.side, lambda_m);
-        let lower = |j: Jet| Jet([j.derivative(1), j.derivative(2), 0.5 * j.derivative(3), 0.0]);
-        let (dx, dy) = (lower(p.x), lower(p.y));
-        let speed = (dx * dx + dy * dy).sqrt();
-        // e as a series in λ: its arguments are arc lengths.
-        let [v, dv] = [speed.value(), speed.derivative(1)];
-        let e = Jet([e0, e1 * v, 0.5 * (e2 * v * v + e1 * dv), 0.0]);
-        let sense = self.cut.purpose().springs.sense();
-        let [nx, ny] = [dy / speed * sense, dx / speed * -sense];
-        let (x, y) = (p.x + e * nx, p.y + e * ny);
-        let pick = |order: usize| [x.derivative(order), y.derivative(order)];
-        Place { at: pick(0), slope: pick(1), bend: pick(2) }
+        beside([p.x, p.y], error, self.cut.purpose().springs.sense())
     }
 }
 
+/// A path shifted along its normal, by a deviation given with its derivatives over the arc length.
+pub(crate) fn beside([x, y]: [Jet; 2], [e0, e1, e2]: [f64; 3], sense: f64) -> Place {
+    let lower = |j: Jet| Jet([j.derivative(1), j.derivative(2), 0.5 * j.derivative(3), 0.0]);
+    let (dx, dy) = (lower(x), lower(y));
+    let speed = (dx * dx + dy * dy).sqrt();
+    // e as a series in λ: its arguments are arc lengths.
+    let [v, dv] = [speed.value(), speed.derivative(1)];
+    let e = Jet([e0, e1 * v, 0.5 * (e2 * v * v + e1 * dv), 0.0]);
+    let [nx, ny] = [dy / speed * sense, dx / speed * -sense];
+    place([x + e * nx, y + e * ny])
+}
+
+/// A place of a path given by its coordinates.
+pub(crate) fn place([x, y]: [Jet; 2]) -> Place {
+    let pick = |order: usize| [x.derivative(order), y.derivative(order)];
+    Place { at: pick(0), slope: pick(1), bend: pick(2) }
+}
+
 impl Circle {
-    fn at(&self, lambda_m: f64) -> Place {
+    /// About the corner, a roller's radius behind the path, where a path ends at λ.
+    pub(crate) fn continuing(join: &Place, lambda_m: f64, radius_m: f64, sense: f64) -> Self {
+        let [_, normal] = frame(join, sense);
+        let from = [radius_m * normal[0], radius_m * normal[1]];
+        let sign = (from[0] * join.slope[1] - from[1] * join.slope[0]).signum();
+        let centre = [join.at[0] - from[0], join.at[1] - from[1]];
+        Self { lambda_m, centre, from, rate: length(join.slope) / radius_m * sign }
+    }
+
+    pub(crate) fn at(&self, lambda_m: f64) -> Place {
         let Self { centre, from, rate, .. } = *self;
         let (sin, cos) = maths::sin_cos(rate * (lambda_m - self.lambda_m));
         let arm = [cos * from[0] - sin * from[1], sin * from[0] + cos * from[1]];
@@ -320,14 +331,17 @@ pub fn frame(place: &Place, sense: f64) -> [Vector; 2] {
 /// The last place at which the roller is larger than the path's radius of curvature: below it the cam that would be needed does not
 /// exist (1 − r κ < 0).
 pub(crate) fn corner(cut: &Cut, side: usize, roller_m: f64) -> Option<Corner> {
-    let sense = cut.purpose().springs.sense();
     let place = |lambda: f64| {
         let p = cut.at(side, lambda);
-        let pick = |order: usize| [p.x.derivative(order), p.y.derivative(order)];
-        Place { at: pick(0), slope: pick(1), bend: pick(2) }
+        place([p.x, p.y])
     };
+    let (lambda_m, at) = corner_of(place, cut.range_m(), roller_m, cut.purpose().springs.sense())?;
+    Some(Corner { lambda_m, travel_m: cut.at(side, lambda_m).s.value(), at })
+}
+
+/// The same of any path: λ, and the corner itself. A path that is hollow towards its roller (κ < 0) is never undercut.
+pub(crate) fn corner_of(place: impl Fn(f64) -> Place, [from, to]: [f64; 2], roller_m: f64, sense: f64) -> Option<(f64, Vector)> {
     let left = |lambda: f64| 1.0 - roller_m * curvature_per_m(&place(lambda), sense);
-    let [from, to] = cut.range_m();
     let at = |i: usize| from + (to - from) * i as f64 / LOOKS as f64;
     // Closer together next to the start, where curvature is largest.
     let dense = |i: usize| from + (at(1) - from) * i as f64 / LOOKS as f64;
@@ -340,7 +354,7 @@ pub(crate) fn corner(cut: &Cut, side: usize, roller_m: f64) -> Option<Corner> {
     let p = place(lambda_m);
     let [_, normal] = frame(&p, sense);
     let at = [p.at[0] - roller_m * normal[0], p.at[1] - roller_m * normal[1]];
-    Some(Corner { lambda_m, travel_m: cut.at(side, lambda_m).s.value(), at })
+    Some((lambda_m, at))
 }
 
 impl ArcLength {

@@ -19,7 +19,7 @@ pub(crate) use comb::comb;
 /// Points along a profile.
 const SAMPLES: usize = 120;
 /// Frames over the travel.
-const FRAMES: usize = 25;
+pub(crate) const FRAMES: usize = 25;
 /// Windings of a drawn spring.
 const TURNS: usize = 14;
 
@@ -76,12 +76,32 @@ fn path(behaviour: &Behaviour, side: usize) -> Vec<Vector> {
     (0..=SAMPLES).map(|i| i as f64 / SAMPLES as f64).map(|u| path.at(from + (to - from) * u * u).at).collect()
 }
 
-fn thin(points: Vec<Vector>, look: Look, word: &'static str) -> Item {
+pub(crate) fn thin(points: Vec<Vector>, look: Look, word: &'static str) -> Item {
     Item::Line { points, width_m: 0.0, role: Role::Named(look, word), values: None }
 }
 
-fn plate(corners: Vec<Vector>) -> Item {
+pub(crate) fn plate(corners: Vec<Vector>) -> Item {
     Item::Body { corners, role: Role::Named(Look::Plate, "cam") }
+}
+
+/// A zigzag between the axles.
+pub(crate) fn spring([a, b]: [Vector; 2], wide: f64) -> Item {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let length = maths::hypot(along[0], along[1]);
+    let across = [-along[1] / length, along[0] / length];
+    let mut points = vec![a];
+    for i in 0..=2 * TURNS {
+        let t = 0.12 + 0.76 * i as f64 / (2 * TURNS) as f64;
+        let out = match i {
+            0 => 0.0,
+            i if i == 2 * TURNS => 0.0,
+            i if i % 2 == 0 => wide,
+            _ => -wide,
+        };
+        points.push([a[0] + t * along[0] + out * across[0], a[1] + t * along[1] + out * across[1]]);
+    }
+    points.push(b);
+    thin(points, Look::Wire, "springs")
 }
 
 impl Artist<'_> {
@@ -177,26 +197,9 @@ impl Artist<'_> {
         note
     }
 
-    /// A zigzag between the axles.
     fn spring(&self, station: &Station) -> Item {
-        let [a, b] = [place(0, station.pose.places[0].at), place(1, station.pose.places[1].at)];
-        let along = [b[0] - a[0], b[1] - a[1]];
-        let length = maths::hypot(along[0], along[1]);
-        let across = [-along[1] / length, along[0] / length];
-        let wide = 0.35 * self.behaviour.mechanism.roller_m;
-        let mut points = vec![a];
-        for i in 0..=2 * TURNS {
-            let t = 0.12 + 0.76 * i as f64 / (2 * TURNS) as f64;
-            let out = match i {
-                0 => 0.0,
-                i if i == 2 * TURNS => 0.0,
-                i if i % 2 == 0 => wide,
-                _ => -wide,
-            };
-            points.push([a[0] + t * along[0] + out * across[0], a[1] + t * along[1] + out * across[1]]);
-        }
-        points.push(b);
-        thin(points, Look::Wire, "springs")
+        let axles = [place(0, station.pose.places[0].at), place(1, station.pose.places[1].at)];
+        spring(axles, 0.35 * self.behaviour.mechanism.roller_m)
     }
 
     /// The slider with its joint and the force that pulls it, as long as it is large.

@@ -45,6 +45,11 @@ pub(crate) struct Requirements {
     pub profile_file: Slot<DataFile>,
     pub stroke: Slot<Quantity>,
     pub window: Slot<[Quantity; 2]>,
+    pub torque: Section<TorqueRequirement>,
+    pub torque_profile: Slot<Vec<Located<[Quantity; 2]>>>,
+    pub torque_profile_file: Slot<DataFile>,
+    pub turn: Slot<Quantity>,
+    pub turn_window: Slot<[Quantity; 2]>,
     pub hysteresis: Slot<Quantity>,
     pub limits: Section<Limits<CamMetrics>>,
 }
@@ -52,6 +57,13 @@ pub(crate) struct Requirements {
 /// A force level and how far from it the force may be.
 #[derive(Debug, Default)]
 pub(crate) struct ForceRequirement {
+    pub nominal: Slot<Quantity>,
+    pub band: Slot<Quantity>,
+}
+
+/// A torque level and how far from it the torque may be.
+#[derive(Debug, Default)]
+pub(crate) struct TorqueRequirement {
     pub nominal: Slot<Quantity>,
     pub band: Slot<Quantity>,
 }
@@ -88,12 +100,22 @@ pub(crate) struct Design {
     pub roller_diameter: Slot<Quantity>,
     pub cam_thickness: Slot<Quantity>,
     pub stroke: Slot<Quantity>,
+    pub turn: Slot<Quantity>,
+    pub disc: Section<Disc>,
     pub rolling_arm: Slot<Quantity>,
     pub rolling_friction: Slot<Quantity>,
     pub friction: Slot<Quantity>,
+    pub guide_friction: Slot<Quantity>,
     pub profile: Section<Profile>,
     pub springs: Section<Springs>,
     pub bodies: Section<Bodies>,
+}
+
+/// The disc of a torque cam.
+#[derive(Debug, Default)]
+pub(crate) struct Disc {
+    pub start_radius: Slot<Quantity>,
+    pub shaft_diameter: Slot<Quantity>,
 }
 
 /// What the cam is cut for.
@@ -103,6 +125,9 @@ pub(crate) struct Profile {
     pub for_force: Slot<Quantity>,
     pub for_profile: Slot<Vec<Located<[Quantity; 2]>>>,
     pub for_profile_file: Slot<DataFile>,
+    pub for_torque: Slot<Quantity>,
+    pub for_torque_profile: Slot<Vec<Located<[Quantity; 2]>>>,
+    pub for_torque_profile_file: Slot<DataFile>,
     pub for_rate: Slot<Quantity>,
     pub for_curve: Slot<Vec<Located<[Quantity; 2]>>>,
     pub for_rest_length: Slot<Quantity>,
@@ -141,6 +166,8 @@ pub(crate) struct Bodies {
     pub brace_inertia: Slot<Quantity>,
     pub roller_mass: Slot<Quantity>,
     pub roller_inertia: Slot<Quantity>,
+    pub follower_mass: Slot<Quantity>,
+    pub disc_inertia: Slot<Quantity>,
 }
 
 /// How the parts are made.
@@ -192,6 +219,8 @@ pub(crate) struct Motion {
     pub law: Slot<&'static str>,
     pub start: Slot<Quantity>,
     pub rise: Slot<Quantity>,
+    pub start_turn: Slot<Quantity>,
+    pub rise_turn: Slot<Quantity>,
     pub duration: Slot<Quantity>,
     pub reference_duration: Slot<Quantity>,
     pub pause: Slot<Quantity>,
@@ -241,6 +270,9 @@ pub(crate) const SPRING_MASSES: &[Word] = &[
 ];
 
 const LARGEST_M: f64 = 10.0;
+/// Of a torque cam: two lobes share a whole turn.
+const LARGEST_TURN_RAD: f64 = 3.0;
+const SMALLEST_TURN_RAD: f64 = 0.01;
 const SMALLEST_M: f64 = 1e-4;
 /// Of a curve.
 const MOST_POINTS: usize = 500;
@@ -272,6 +304,14 @@ fn length(key: &'static str, doc: &'static str) -> Param {
     Param::new(key, doc).of(Dimension::Length)
 }
 
+fn angle(key: &'static str, doc: &'static str) -> Param {
+    Param::new(key, doc).of(Dimension::Angle)
+}
+
+fn torque_curve(key: &'static str, doc: &'static str) -> Param {
+    Param::new(key, doc).of(Dimension::Torque).above(0.0, 1e6)
+}
+
 fn force_curve(key: &'static str, doc: &'static str) -> Param {
     Param::new(key, doc).of(Dimension::Force).above(0.0, 1e6)
 }
@@ -286,8 +326,16 @@ impl Describe for Requirements {
         v.quantity(&length("stroke", "Travel that is needed.").above(0.0, LARGEST_M), &mut self.stroke);
         let window = "Travel of the slider where means, bands and loops are taken, from and to; by default the stroke without undercut.";
         v.point(&length("window", window).within(0.0, LARGEST_M), &mut self.window);
+        self.torque.describe(v, &Param::new("torque", "Torque cam: level and band of the torque, both ways."));
+        let doc = "Torque cam: torque over the turn of the disc, instead of one level: straight between its points.";
+        v.pairs(&torque_curve("torque_profile", doc), Dimension::Angle, MOST_POINTS, &mut self.torque_profile);
+        let doc = "The same from a CSV file: turn and torque, with units in the header, `turn / deg, torque / N*m`.";
+        v.file(&Param::new("torque_profile_file", doc), &mut self.torque_profile_file);
+        v.quantity(&angle("turn", "Torque cam: turn that is needed.").above(0.0, LARGEST_TURN_RAD), &mut self.turn);
+        let doc = "Torque cam: turn of the disc where means, bands and loops are taken, from and to; by default the turn without undercut.";
+        v.point(&angle("turn_window", doc).within(0.0, LARGEST_TURN_RAD), &mut self.turn_window);
         v.quantity(
-            &Param::new("hysteresis", "Largest (mean up − mean down)/mean of the force over the window.").above(0.0, 10.0),
+            &Param::new("hysteresis", "Largest (mean up − mean down)/mean of the force or torque over the window.").above(0.0, 10.0),
             &mut self.hysteresis,
         );
         self.limits.describe(v, &Param::new("limits", "Limits on any metric, by its name."));
@@ -300,6 +348,14 @@ impl Describe for ForceRequirement {
             &Param::new("nominal", "Force level; with `profile` it is not given.").of(Dimension::Force).above(0.0, 1e6),
             &mut self.nominal,
         );
+        v.quantity(&Param::new("band", "Half width β of the band, relative to the level.").above(0.0, 0.9).required(), &mut self.band);
+    }
+}
+
+impl Describe for TorqueRequirement {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let nominal = torque_curve("nominal", "Torque level; with `torque_profile` it is not given.");
+        v.quantity(&nominal, &mut self.nominal);
         v.quantity(&Param::new("band", "Half width β of the band, relative to the level.").above(0.0, 0.9).required(), &mut self.band);
     }
 }
@@ -341,7 +397,8 @@ impl Describe for Design {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.choice(&Param::new("arrangement", "How the springs act.").default("tension"), ARRANGEMENTS, &mut self.arrangement);
         let brace = |key, doc| length(key, doc).within(SMALLEST_M, LARGEST_M);
-        v.quantity(&brace("brace_length", "Length l of the braces, joint to axle.").required(), &mut self.brace_length);
+        let doc = "Length l of the braces, joint to axle; needed without `disc`.";
+        v.quantity(&brace("brace_length", doc), &mut self.brace_length);
         v.quantity(
             &Param::new("roller_diameter", "Diameter of the rollers, 2r.").diameter().within(SMALLEST_M, 1.0).required(),
             &mut self.roller_diameter,
@@ -350,10 +407,12 @@ impl Describe for Design {
             &length("cam_thickness", "Thickness of the cam plate, on which the rollers bear.").within(SMALLEST_M, 1.0),
             &mut self.cam_thickness,
         );
-        v.quantity(
-            &length("stroke", "Travel s of the slider for which the cam is cut.").within(SMALLEST_M, LARGEST_M).required(),
-            &mut self.stroke,
-        );
+        let doc = "Travel s of the slider for which the cam is cut; needed without `disc`.";
+        v.quantity(&length("stroke", doc).within(SMALLEST_M, LARGEST_M), &mut self.stroke);
+        let doc = "Torque cam: turn θ of the disc for which it is cut; what is left of half a turn leads back to the start of a lobe.";
+        v.quantity(&angle("turn", doc).within(SMALLEST_TURN_RAD, LARGEST_TURN_RAD), &mut self.turn);
+        let doc = "With this table it is a torque cam: a disc on a shaft with two equal lobes between two rollers on radial guides.";
+        self.disc.describe(v, &Param::new("disc", doc));
         v.quantity(
             &length("rolling_arm", "Arm of the rolling resistance: friction μ is arm over roller radius.").within(0.0, 0.1),
             &mut self.rolling_arm,
@@ -363,6 +422,8 @@ impl Describe for Design {
             &Param::new("friction", "Friction that is there between roller and cam, so that the rollers roll.").within(0.0, 2.0),
             &mut self.friction,
         );
+        let doc = "Torque cam: Coulomb friction between a follower and its guide, on the force across it.";
+        v.quantity(&Param::new("guide_friction", doc).within(0.0, 0.5), &mut self.guide_friction);
         self.profile.describe(
             v,
             &Param::new(
@@ -376,6 +437,15 @@ impl Describe for Design {
     }
 }
 
+impl Describe for Disc {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let doc = "Distance of the rollers' centres from the shaft's middle at the start: half the length of the springs there.";
+        v.quantity(&length("start_radius", doc).within(SMALLEST_M, LARGEST_M).required(), &mut self.start_radius);
+        let doc = "Diameter of the hole for the shaft; without it there is none.";
+        v.quantity(&length("shaft_diameter", doc).within(SMALLEST_M, 1.0), &mut self.shaft_diameter);
+    }
+}
+
 impl Describe for Profile {
     fn describe(&mut self, v: &mut dyn Visitor) {
         v.quantity(&force_curve("for_force", "The constant force."), &mut self.for_force);
@@ -384,6 +454,11 @@ impl Describe for Profile {
         v.pairs(&curve, Dimension::Length, MOST_POINTS, &mut self.for_profile);
         let doc = "The same from a CSV file: travel and force, with units in the header, `travel / mm, force / N`.";
         v.file(&Param::new("for_profile_file", doc), &mut self.for_profile_file);
+        v.quantity(&torque_curve("for_torque", "Torque cam: the constant torque."), &mut self.for_torque);
+        let doc = "Torque cam: any torque over the turn, above zero, straight between its points: `[[\"0 deg\", \"1 N*m\"], …]`.";
+        v.pairs(&torque_curve("for_torque_profile", doc), Dimension::Angle, MOST_POINTS, &mut self.for_torque_profile);
+        let doc = "The same from a CSV file: turn and torque, with units in the header, `turn / deg, torque / N*m`.";
+        v.file(&Param::new("for_torque_profile_file", doc), &mut self.for_torque_profile_file);
         let rate = Param::new("for_rate", "Rate of all springs together.").of(Dimension::Stiffness).above(0.0, 1e9);
         v.quantity(&rate, &mut self.for_rate);
         let curve = Param::new("for_curve", "Force of all springs together over their length, instead of rate and rest length.");
@@ -396,9 +471,13 @@ impl Describe for Profile {
             &Param::new("for_friction", "Rolling friction μ that is compensated.").within(0.0, 0.2).default("0"),
             &mut self.for_friction,
         );
-        v.choice(&Param::new("compensate", "In which direction the force is exact.").default("up"), COMPENSATIONS, &mut self.compensate);
+        v.choice(
+            &Param::new("compensate", "In which direction the force or torque is exact.").default("up"),
+            COMPENSATIONS,
+            &mut self.compensate,
+        );
         v.quantity(
-            &Param::new("share_right", "Part of the springs' deformation that the right side makes.").within(0.05, 0.95).default("0.5"),
+            &Param::new("share_right", "Part of the force that the right side carries.").within(0.05, 0.95).default("0.5"),
             &mut self.share_right,
         );
     }
@@ -437,6 +516,8 @@ impl Describe for Bodies {
         v.quantity(&inertia("brace_inertia", "Each brace about its middle."), &mut self.brace_inertia);
         v.quantity(&mass("roller_mass", "Each roller with its axle, without springs."), &mut self.roller_mass);
         v.quantity(&inertia("roller_inertia", "What rolls of each roller, about its axis."), &mut self.roller_inertia);
+        v.quantity(&mass("follower_mass", "Torque cam: what moves on its guide with each roller."), &mut self.follower_mass);
+        v.quantity(&inertia("disc_inertia", "Torque cam: disc, shaft and what turns with them."), &mut self.disc_inertia);
     }
 }
 
@@ -516,6 +597,10 @@ impl Describe for Motion {
             &length("rise", "How far it moves, but for `release`; below zero it moves back.").within(-LARGEST_M, LARGEST_M),
             &mut self.rise,
         );
+        let doc = "Torque cam: turn θ of the disc at the beginning.";
+        v.quantity(&angle("start_turn", doc).within(0.0, LARGEST_TURN_RAD), &mut self.start_turn);
+        let doc = "Torque cam: how far the disc turns; below zero it turns back.";
+        v.quantity(&angle("rise_turn", doc).within(-LARGEST_TURN_RAD, LARGEST_TURN_RAD), &mut self.rise_turn);
         let time = |key, doc| Param::new(key, doc).of(Dimension::Time).within(1e-4, 1e5);
         v.quantity(&time("duration", "How long that takes, T; after a release, how long it is watched."), &mut self.duration);
         v.quantity(&time("reference_duration", "A slower motion to compare with."), &mut self.reference_duration);

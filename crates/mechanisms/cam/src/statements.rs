@@ -4,11 +4,11 @@ use forcewright_base::units::{format_number, format_si};
 use forcewright_model::{Citation, Statement, Status, StatusKind, Warning};
 
 use crate::analysis::{Behaviour, Measured};
-use crate::design::Design;
+use crate::design::{Design, Material};
 use crate::mechanism::SpringMass;
 use crate::release::End;
 
-fn statement(title: &str, text: impl Into<String>) -> Statement {
+pub(crate) fn statement(title: &str, text: impl Into<String>) -> Statement {
     Statement { title: title.to_owned(), text: text.into() }
 }
 
@@ -128,13 +128,19 @@ pub(crate) fn limits(design: &Design) -> Vec<Statement> {
 
 /// Works that were used.
 pub(crate) fn sources(design: &Design) -> Vec<Citation> {
+    let paper = "arrangement, equilibrium with rolling friction (1), path (2)–(3), motion (17)";
+    cited(paper, &design.materials)
+}
+
+/// The paper of the family, for what it was used, and the sources of material data.
+pub(crate) fn cited(used_for: &'static str, materials: &[Option<Material>; 2]) -> Vec<Citation> {
     let mut all = vec![Citation {
         key: "sanchez2022",
         text: "S. Sánchez-Salinas, A. García-Agúndez, J. López-Martínez, D. García-Vallejo: Experimental validation of a constant-force mechanism and analysis of its performance with a calibrated multibody model. Mechanism and Machine Theory 173 (2022) 104819.",
-        used_for: "arrangement, equilibrium with rolling friction (1), path (2)–(3), motion (17)",
+        used_for,
     }];
     let mut keys: Vec<&'static str> = Vec::new();
-    for key in design.materials.iter().flatten().flat_map(|m| &m.sources) {
+    for key in materials.iter().flatten().flat_map(|m| &m.sources) {
         if !keys.contains(key) {
             keys.push(key);
         }
@@ -184,33 +190,21 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             ),
         });
     }
-    if design.purpose.sides[0] != design.purpose.sides[1] && !behaviour.window.is_empty() {
-        let off = |s: &crate::analysis::Station| {
-            let [rise, fall] = [0, 1].map(|side| s.pose.places[side].at[1]);
-            (rise - fall).abs()
-        };
-        let [_, most] = Behaviour::extent(&behaviour.window, off);
-        all.push(Warning {
-            code: "W0607",
-            message: format!(
-                "with unequal shares the axles stand at heights that differ by up to {}: the springs slant, which the cut of the cam does not know, and the force departs from the one wanted",
-                format_si(most, &design.units.length, 3)
-            ),
-        });
-    }
     all.extend(crate::profile_figures::warning(design));
     all.extend(crate::profile_figures::uncovered(design, behaviour));
-    if let (Some(friction), Some(needed)) = (design.friction, measured.get("friction_needed_max"))
-        && needed > friction
-    {
-        all.push(Warning {
-            code: "W0604",
-            message: format!(
-                "rolling needs a friction of {}, {} is there: the rollers slide",
-                format_number(needed, 3),
-                format_number(friction, 3)
-            ),
-        });
-    }
+    all.extend(sliding(design.friction, measured));
     all
+}
+
+/// Rollers that slide.
+pub(crate) fn sliding(friction: Option<f64>, measured: &Measured) -> Option<Warning> {
+    let (friction, needed) = (friction?, measured.get("friction_needed_max")?);
+    (needed > friction).then(|| Warning {
+        code: "W0604",
+        message: format!(
+            "rolling needs a friction of {}, {} is there: the rollers slide",
+            format_number(needed, 3),
+            format_number(friction, 3)
+        ),
+    })
 }

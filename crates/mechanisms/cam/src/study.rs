@@ -1,7 +1,7 @@
 //! The family seen by studies.
 
-mod knobs;
-mod many;
+pub(crate) mod knobs;
+pub(crate) mod many;
 mod sensitivity;
 mod task;
 

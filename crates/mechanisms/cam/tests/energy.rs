@@ -29,7 +29,7 @@ fn mechanism(law: ForceLaw, bodies: Bodies, spring_kg: f64, friction: f64, radiu
         springs,
         bodies,
         gravity_m_per_s2: 9.81,
-        rise_m: cut.rise_m(0),
+        rise_m: cut.rise_m(),
     }
 }
 

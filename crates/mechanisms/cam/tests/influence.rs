@@ -22,7 +22,7 @@ fn cut(law: ForceLaw, extension: bool, preload_m: f64, friction: f64) -> Arc<Cut
         law,
         springs: bank(extension, start_length_m - sign * preload_m),
         start_length_m,
-        sides: [CutSide { brace_m: 0.22, share: 0.55 }, CutSide { brace_m: 0.2, share: 0.45 }],
+        sides: [CutSide { brace_m: 0.22, share: 0.55 }, CutSide { brace_m: 0.22, share: 0.45 }],
         friction,
         stroke_m: STROKE_M,
     };
@@ -45,7 +45,7 @@ fn mechanism(cut: &Arc<Cut>, gravity: f64) -> Mechanism {
             springs: SpringMass::Bar,
         },
         gravity_m_per_s2: gravity,
-        rise_m: cut.rise_m(0),
+        rise_m: cut.rise_m(),
     }
 }
 

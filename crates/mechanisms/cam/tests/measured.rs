@@ -40,7 +40,7 @@ fn mechanism(cut: &Arc<Cut>, errors: [Option<Arc<dyn NormalError>>; 2]) -> Mecha
         springs: springs(),
         bodies: Bodies { slider_kg: 0.0, brace_kg: 0.0, brace_kg_m2: 0.0, roller_kg: 0.0, roller_kg_m2: 0.0, springs: SpringMass::Bar },
         gravity_m_per_s2: 0.0,
-        rise_m: cut.rise_m(0),
+        rise_m: cut.rise_m(),
     }
 }
 
@@ -107,7 +107,7 @@ fn the_scatter_of_the_force_from_random_profiles() {
         let m = mechanism(&cut, [random.of(0), random.of(1)]);
         // The stroke of the paper's Fig. 13: 100 mm from s2 = 206.5 mm.
         for i in 0..=50 {
-            let s = 0.2065 - cut.rise_m(0) + 0.1 * f64::from(i) / 50.0;
+            let s = 0.2065 - cut.rise_m() + 0.1 * f64::from(i) / 50.0;
             squares += (force_n(&m, s) / 50.0 - 1.0) * (force_n(&m, s) / 50.0 - 1.0);
             count += 1.0;
         }

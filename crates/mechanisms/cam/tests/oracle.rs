@@ -64,7 +64,7 @@ fn mechanism(cut: &Arc<Cut>, springs: Bank, friction: f64, flaws: [Flaws; 2]) ->
         springs,
         bodies: BODIES,
         gravity_m_per_s2: 0.0,
-        rise_m: cut.rise_m(0),
+        rise_m: cut.rise_m(),
     }
 }
 
@@ -181,7 +181,7 @@ fn forces_in_a_motion() {
     let m = Mechanism { gravity_m_per_s2: 9.81, ..plain(&cut, 1380.0, 0.0) };
     let motion = Motion {
         law: Law::Cycloidal,
-        start_m: 0.22 - cut.rise_m(0),
+        start_m: 0.22 - cut.rise_m(),
         rise_m: 0.1,
         duration_s: 0.125,
         pause_s: 0.0,
@@ -211,7 +211,7 @@ fn errors_of_assembly_and_making() {
     for (key, deg) in [("y0=0|g0.0|2deg", 2.0), ("y0=0|g0.0|5deg", 5.0)] {
         let m = turned(deg, -deg);
         for (i, force) in numbers(&reference["fig15"][key]["F"]).into_iter().enumerate() {
-            let s = 0.212 + 0.01 * i as f64 - cut.rise_m(0);
+            let s = 0.212 + 0.01 * i as f64 - cut.rise_m();
             close(rest_force(&m, s, Sense::Frictionless), force, 1e-9, key);
             // The same whichever way it is tilted.
             close(rest_force(&turned(-deg, deg), s, Sense::Frictionless), force, 1e-9, key);
@@ -220,7 +220,28 @@ fn errors_of_assembly_and_making() {
     for (key, deg) in [("y0=0|g0.0|-0.4deg", -0.4), ("y0=0|g0.0|0.4deg", 0.4)] {
         let m = turned(deg, deg);
         for (i, force) in numbers(&reference["fig16"][key]["F"]).into_iter().enumerate() {
-            close(rest_force(&m, 0.22 + 0.01 * i as f64 - cut.rise_m(0), Sense::Frictionless), force, 1e-9, key);
+            close(rest_force(&m, 0.22 + 0.01 * i as f64 - cut.rise_m(), Sense::Frictionless), force, 1e-9, key);
+        }
+    }
+}
+
+/// One side carries 60 % of a rising force, friction is compensated: the force is the law itself in that direction, although the springs
+/// slant, and each side carries its part.
+#[test]
+fn compensated_on_unequal_sides() {
+    let law = ForceLaw::through(&[[0.0, 40.0], [0.2, 60.0]]).expect("a law");
+    for (friction, sense) in [(0.004, Sense::Up), (-0.004, Sense::Down)] {
+        let sides = [CutSide { brace_m: L, share: 0.6 }, CutSide { brace_m: L, share: 0.4 }];
+        let purpose = Purpose { law: law.clone(), springs: bank(1380.0, 0.136), start_length_m: 0.144, sides, friction, stroke_m: 0.2 };
+        let cut = Arc::new(Cut::new(purpose).expect("a cam"));
+        let m = mechanism(&cut, bank(1380.0, 0.136), 0.004, [Flaws::default(), Flaws::default()]);
+        for s in [0.01, 0.05, 0.11, 0.19] {
+            let pose = m.pose([s, 0.0]).expect("assembles");
+            assert!((pose.places[0].at[1] - pose.places[1].at[1]).abs() > 1e-4, "the springs slant");
+            let instant = m.forces(&pose, &Drive::rest(s), sense);
+            close(instant.force_n, law.force_n(s)[0], 1e-9, "force");
+            let part = instant.sides[0].brace_n * (pose.joints[0][1] - pose.places[0].at[1]) / L;
+            close(part, 0.6 * law.force_n(s)[0], 1e-9, "of the right side");
         }
     }
 }
@@ -241,17 +262,11 @@ fn any_law_with_any_springs_on_unequal_sides() {
             let cut = Arc::new(Cut::new(purpose).expect("a cam"));
             let mut m = mechanism(&cut, springs.clone(), 0.0, [Flaws::default(), Flaws::default()]);
             m.brace_m = [0.25, 0.21];
-            m.rise_m = cut.rise_m(0);
+            m.rise_m = cut.rise_m();
             m.paths = [0, 1].map(|side| SidePath::new(Arc::clone(&cut), side, 1e-4, &Flaws::default()));
-            // The joint of both braces is one: the sides start at different heights.
-            let shift = cut.rise_m(0) - cut.rise_m(1);
-            m.paths[1] = SidePath::new(Arc::clone(&cut), 1, 1e-4, &Flaws { shift_m: [0.0, shift], ..Flaws::default() });
             for s in [0.004, 0.03, 0.047, 0.08, 0.119] {
-                // The axles are at different heights where the sides differ: the law is that of springs along the travel's normal.
                 let instant = m.instant(&Drive::rest(s), Sense::Frictionless).expect("assembles");
-                if (share - 0.5).abs() < 1e-12 && shift.abs() < 1e-12 {
-                    close(instant.force_n, law.force_n(s)[0], 1e-9, "force");
-                }
+                close(instant.force_n, law.force_n(s)[0], 1e-9, "force");
                 let h = 1e-5;
                 let energy = |s: f64| {
                     let length = m.instant(&Drive::rest(s), Sense::Frictionless).expect("assembles").spring_m;

@@ -2,8 +2,9 @@
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::units::Quantity;
-use forcewright_contract::describe::{Located, Origin};
+use forcewright_contract::describe::Located;
 
+use super::kind::typed;
 use super::{Built, missing, place_of, si};
 use crate::cut::Purpose;
 use crate::motion::{Law, Motion};
@@ -15,11 +16,6 @@ const RELEASE: &str = "release";
 
 fn is_released(spec: &Spec) -> bool {
     spec.motion.law.as_ref().is_some_and(|law| law.value == RELEASE)
-}
-
-/// Where a key was typed.
-fn typed<T>(slot: Option<&Located<T>>) -> Option<Span> {
-    slot.filter(|s| s.origin == Origin::File).map(|s| s.span)
 }
 
 fn need(
@@ -76,6 +72,41 @@ pub(super) fn prescribed(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<M
         pause_s: si(&motion.pause).unwrap_or(0.0),
         returns: motion.back.as_ref().is_some_and(|b| b.value),
         reference_s: si(&motion.reference_duration),
+    })
+}
+
+/// A motion of the disc of a torque cam: the travel is its turn.
+pub(crate) fn turned(spec: &Spec, turn_rad: f64, diagnostics: &mut Diagnostics) -> Option<Motion> {
+    let motion = &spec.motion;
+    motion.present.as_ref()?;
+    let law = match motion.law.as_ref()?.value {
+        "polynomial" => Law::Polynomial,
+        "uniform" => Law::Uniform,
+        _ => Law::Cycloidal,
+    };
+    let keys = "`start_turn`, `rise_turn` and `duration`";
+    let start = need(spec, motion.start_turn.as_ref(), "start_turn", [keys, "10 deg"], diagnostics);
+    let rise = need(spec, motion.rise_turn.as_ref(), "rise_turn", [keys, "90 deg"], diagnostics);
+    let duration = need(spec, motion.duration.as_ref(), "duration", [keys, "0.5 s"], diagnostics);
+    let (start, rise) = (start?, rise?);
+    let inside = |turn: f64| turn >= -1e-9 && turn <= turn_rad * (1.0 + 1e-9);
+    if !inside(start) || !inside(start + rise) {
+        let place = motion.rise_turn.as_ref().map_or_else(Span::default, |r| r.span);
+        diagnostics.push(
+            Diagnostic::error("E0605", place, "the motion leaves the turn for which the disc is cut")
+                .label("here")
+                .related(spec.design.turn.as_ref().map_or_else(Span::default, |s| s.span), "the turn")
+                .help("shorten `rise_turn`, or move `start_turn`"),
+        );
+    }
+    Some(Motion {
+        law,
+        start_m: start,
+        rise_m: rise,
+        duration_s: duration?,
+        pause_s: si(&motion.pause).unwrap_or(0.0),
+        returns: motion.back.as_ref().is_some_and(|b| b.value),
+        reference_s: None,
     })
 }
 

@@ -9,7 +9,7 @@ use crate::spec::Spec;
 use crate::springs::{Spring, SpringLaw};
 
 /// The springs; `None` after an error.
-pub(super) fn mounted(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Vec<Spring>> {
+pub(crate) fn mounted(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Vec<Spring>> {
     let springs = &spec.design.springs;
     exclude(&springs.rates, &springs.rate, ["rates", "rate"], diagnostics);
     exclude(&springs.rates, &springs.curve, ["rates", "curve"], diagnostics);

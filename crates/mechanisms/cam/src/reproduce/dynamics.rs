@@ -51,7 +51,7 @@ impl Prototype {
 
     /// Travel of an ordinate s2 of the paper, m.
     fn travel_m(&self, s2_m: f64) -> Option<f64> {
-        Some(s2_m - self.design.cut().ok()?.rise_m(0))
+        Some(s2_m - self.design.cut().ok()?.rise_m())
     }
 
     fn peak(&self, springs: usize, masses: Masses, metric: &str) -> Option<f64> {

@@ -188,7 +188,7 @@ fn which(right: bool, left: bool) -> usize {
     }
 }
 
-fn set_rate(spring: &mut Spring, rate: f64) {
+pub(crate) fn set_rate(spring: &mut Spring, rate: f64) {
     if let SpringLaw::Linear { rate_n_per_m, .. } = &mut spring.law {
         *rate_n_per_m = rate;
     }

@@ -6,16 +6,16 @@ use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Outp
 use super::knobs::Knobs;
 use crate::analysis::{Behaviour, measure_scalars};
 use crate::cut::SIDES;
-use crate::design::Design;
+use crate::design::{Design, Requirements};
 use crate::law::ForceLaw;
 use crate::metrics::{CamMetrics, METRICS};
 use crate::motion::Motion;
 use crate::path::SidePath;
 
 /// Panels of the window, each with a station in its middle.
-const PANELS: usize = 40;
+pub(crate) const PANELS: usize = 40;
 /// Stations over the window.
-pub(super) const STATIONS: usize = 2 * PANELS + 1;
+pub(crate) const STATIONS: usize = 2 * PANELS + 1;
 
 /// Metrics that follow from the forces over the window.
 const OF_FORCES: [&str; 13] = [
@@ -86,7 +86,9 @@ impl Many {
         // No value of a study is about the slower motion.
         let motion = design.motion.map(|motion| Motion { reference_s: None, ..motion });
         let base = Design { motion, ..design.clone() };
-        Self { paths, window_m, wanted, outputs, measures: measures(design), base, knobs }
+        let lengths = [design.built.min_length_m, design.built.max_length_m];
+        let measures = measures(OF_FORCES.iter().chain(&SCALARS), design.requirements.as_ref(), lengths, design.moves());
+        Self { paths, window_m, wanted, outputs, measures, base, knobs }
     }
 
     /// Travels at which forces are computed, m.
@@ -100,58 +102,62 @@ impl Many {
         let law = self.wanted.as_ref().unwrap_or(&self.base.purpose.law);
         self.stations_m().map(|s| law.force_n(s)[0]).collect()
     }
-
-    fn of_forces(&self, values: &[f64]) -> [f64; OF_FORCES.len()] {
-        let [up, down, still] = [0, 1, 2].map(|i| &values[i * STATIONS..(i + 1) * STATIONS]);
-        let weight = |i: usize| {
-            if i == 0 || i == STATIONS - 1 {
-                1.0
-            } else if i % 2 == 1 {
-                4.0
-            } else {
-                2.0
-            }
-        };
-        let total = 3.0 * (STATIONS - 1) as f64;
-        let mean = |v: &[f64]| v.iter().enumerate().map(|(i, v)| weight(i) * v).sum::<f64>() / total;
-        let spread = |v: &[f64], mean: f64| {
-            let sum: f64 = v.iter().enumerate().map(|(i, v)| weight(i) * (v - mean) * (v - mean)).sum();
-            (sum / total).max(0.0).sqrt()
-        };
-        let extent = |v: &[f64]| v.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
-        let (mean_up, mean_down, mean_still) = (mean(up), mean(down), mean(still));
-        let ([up_min, up_max], [down_min, down_max]) = (extent(up), extent(down));
-        let wanted = self.wanted_n();
-        let off = |v: &[f64]| v.iter().zip(&wanted).map(|(v, w)| (v / w - 1.0).abs()).fold(0.0, f64::max);
-        let deviation = if self.wanted.is_some() { off(up).max(off(down)) } else { f64::NAN };
-        let [from, to] = self.window_m;
-        let (high, low) = (up_max.max(down_max), up_min.min(down_min));
-        [
-            deviation,
-            mean_still,
-            mean_up,
-            spread(up, mean_up),
-            up_max,
-            up_min,
-            mean_down,
-            spread(down, mean_down),
-            down_max,
-            down_min,
-            (mean_up - mean_down) * (to - from),
-            (mean_up - mean_down) / mean_still,
-            (high - low) / (high + low),
-        ]
-    }
 }
 
-fn measures(design: &Design) -> Vec<Measure> {
-    let requirements = design.requirements.as_ref();
+/// What follows from forces over a window at [`STATIONS`] places, up, down and without friction: the order of [`OF_FORCES`].
+pub(crate) fn of_forces(values: &[f64], wanted: Option<&[f64]>, [from, to]: [f64; 2]) -> [f64; OF_FORCES.len()] {
+    let [up, down, still] = [0, 1, 2].map(|i| &values[i * STATIONS..(i + 1) * STATIONS]);
+    let weight = |i: usize| {
+        if i == 0 || i == STATIONS - 1 {
+            1.0
+        } else if i % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        }
+    };
+    let total = 3.0 * (STATIONS - 1) as f64;
+    let mean = |v: &[f64]| v.iter().enumerate().map(|(i, v)| weight(i) * v).sum::<f64>() / total;
+    let spread = |v: &[f64], mean: f64| {
+        let sum: f64 = v.iter().enumerate().map(|(i, v)| weight(i) * (v - mean) * (v - mean)).sum();
+        (sum / total).max(0.0).sqrt()
+    };
+    let extent = |v: &[f64]| v.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
+    let (mean_up, mean_down, mean_still) = (mean(up), mean(down), mean(still));
+    let ([up_min, up_max], [down_min, down_max]) = (extent(up), extent(down));
+    let off = |v: &[f64], wanted: &[f64]| v.iter().zip(wanted).map(|(v, w)| (v / w - 1.0).abs()).fold(0.0, f64::max);
+    let deviation = wanted.map_or(f64::NAN, |wanted| off(up, wanted).max(off(down, wanted)));
+    let (high, low) = (up_max.max(down_max), up_min.min(down_min));
+    [
+        deviation,
+        mean_still,
+        mean_up,
+        spread(up, mean_up),
+        up_max,
+        up_min,
+        mean_down,
+        spread(down, mean_down),
+        down_max,
+        down_min,
+        (mean_up - mean_down) * (to - from),
+        (mean_up - mean_down) / mean_still,
+        (high - low) / (high + low),
+    ]
+}
+
+/// What a study measures: names of metrics, of which the requirements limit some.
+pub(crate) fn measures<'a>(
+    names: impl Iterator<Item = &'a &'static str>,
+    requirements: Option<&Requirements>,
+    [min_length_m, max_length_m]: [Option<f64>; 2],
+    moves: bool,
+) -> Vec<Measure> {
     let one = |name: &str| {
         let (mut lower, mut upper, mut requirement) = (f64::NEG_INFINITY, f64::INFINITY, "");
         match name {
-            "force_deviation" => {
+            "force_deviation" | "torque_deviation" => {
                 if let Some((_, band)) = requirements.and_then(|r| r.force.as_ref()) {
-                    (upper, requirement) = (*band, "force");
+                    (upper, requirement) = (*band, name.split('_').next().unwrap_or(name));
                 }
             }
             "hysteresis" => {
@@ -160,17 +166,17 @@ fn measures(design: &Design) -> Vec<Measure> {
                 }
             }
             "spring_length_max" => {
-                if let Some(max) = design.built.max_length_m {
+                if let Some(max) = max_length_m {
                     (upper, requirement) = (max, "spring_length");
                 }
             }
             "spring_length_min" => {
-                if let Some(min) = design.built.min_length_m {
+                if let Some(min) = min_length_m {
                     (lower, requirement) = (min, "spring_solid");
                 }
             }
             "contact_force_min" => (lower, requirement) = (0.0, "contact"),
-            "contact_force_min_motion" if design.moves() => (lower, requirement) = (0.0, "contact_motion"),
+            "contact_force_min_motion" if moves => (lower, requirement) = (0.0, "contact_motion"),
             _ => {}
         }
         for limit in requirements.iter().flat_map(|r| &r.limits).filter(|l| l.name::<CamMetrics>() == name) {
@@ -181,7 +187,7 @@ fn measures(design: &Design) -> Vec<Measure> {
         let unit = METRICS.iter().find(|m| m.name == name).map_or(Dimension::Ratio, |m| m.dimension).si_symbol();
         Measure { name: name.to_owned(), requirement: requirement.to_owned(), unit, lower, upper }
     };
-    OF_FORCES.iter().chain(&SCALARS).map(|name| one(name)).collect()
+    names.map(|name| one(name)).collect()
 }
 
 impl Evaluator for Many {
@@ -243,7 +249,8 @@ impl Evaluator for Many {
             out.resize(self.measures.len(), f64::NAN);
             return;
         }
-        out.extend(self.of_forces(values));
+        let wanted = self.wanted.as_ref().map(|_| self.wanted_n());
+        out.extend(of_forces(values, wanted.as_deref(), self.window_m));
         out.extend(&values[3 * STATIONS..]);
     }
 }

@@ -216,7 +216,7 @@ fn looked_at(asked: &Asked, size: Size) -> Option<Size> {
     if corner(&cut, 0, size.roller_m * 1.001).is_some() {
         return None;
     }
-    let height_m = cut.rise_m(0) + asked.stroke_m + 2.0 * size.roller_m;
+    let height_m = cut.rise_m() + asked.stroke_m + 2.0 * size.roller_m;
     if height_m > asked.room_m[1] {
         return None;
     }
@@ -229,7 +229,7 @@ fn looked_at(asked: &Asked, size: Size) -> Option<Size> {
         springs,
         bodies,
         gravity_m_per_s2: 0.0,
-        rise_m: cut.rise_m(0),
+        rise_m: cut.rise_m(),
     };
     let [from, to] = asked.window_m.unwrap_or([0.0, asked.stroke_m]);
     let (mut lost, mut kept, mut worst) = (0.0, 0.0, 0.0_f64);
