@@ -87,11 +87,12 @@ fn samples(workspace: &Workspace, steps: &mut Steps) -> Option<(PathBuf, PathBuf
 }
 
 /// Projects whose parts are read in a CAD kernel: outlines of beams and of cams.
-const PROJECTS: [&str; 4] = [
+const PROJECTS: [&str; 5] = [
     "examples/compliant/lan-table3.toml",
     "examples/compliant/lan-end-effector.toml",
     "examples/cam/no-undercut.toml",
     "examples/cam/push-springs.toml",
+    "examples/cam/torque-cam.toml",
 ];
 
 const EXAMPLE: [&str; 6] = ["run", "--package", "forcewright-fabricate", "--example", "samples", "--"];
