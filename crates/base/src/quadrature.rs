@@ -91,6 +91,18 @@ impl GaussLegendre {
     }
 }
 
+/// Weight of a value among `count` values at even distances in their mean by Simpson's rule; `count` is odd and at least 3.
+pub fn simpson_weight(place: usize, count: usize) -> f64 {
+    let weight = if place == 0 || place + 1 == count {
+        1.0
+    } else if place % 2 == 1 {
+        4.0
+    } else {
+        2.0
+    };
+    weight / (3.0 * (count - 1) as f64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,6 +131,16 @@ mod tests {
             assert!((rule.weights().iter().sum::<f64>() - 1.0).abs() < 1e-14);
         }
         assert!((GaussLegendre::new(2).integrate(|u| u * u * u * u) - 0.2).abs() > 1e-3);
+    }
+
+    #[test]
+    fn simpson_s_rule_is_exact_for_cubics() {
+        for count in [3, 5, 21] {
+            let mean =
+                |f: &dyn Fn(f64) -> f64| -> f64 { (0..count).map(|i| simpson_weight(i, count) * f(i as f64 / (count - 1) as f64)).sum() };
+            assert!((mean(&|u| 1.0 + u * u * u) - 1.25).abs() < 1e-15);
+            assert!((mean(&|u| u * u * u * u) - 0.2).abs() > 1e-8);
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use forcewright_base::maths;
+use forcewright_base::quadrature::simpson_weight;
 use forcewright_elements::hertz::{LIFE_CYCLES, Life, Solid, line_contact, surface_life};
 
 use crate::cut::{Cut, CutError, SIDES};
@@ -124,19 +125,10 @@ impl Behaviour {
 
 /// Mean and standard deviation over stations at even distances, an odd number of them, by Simpson's rule.
 pub(crate) fn moments<S>(stations: &[S], value: impl Fn(&S) -> f64) -> [f64; 2] {
-    let n = stations.len() - 1;
-    let weight = |i: usize| {
-        if i == 0 || i == n {
-            1.0
-        } else if i % 2 == 1 {
-            4.0
-        } else {
-            2.0
-        }
-    };
-    let total = 3.0 * n as f64;
-    let mean = stations.iter().enumerate().map(|(i, s)| weight(i) * value(s)).sum::<f64>() / total;
-    let spread = stations.iter().enumerate().map(|(i, s)| weight(i) * (value(s) - mean) * (value(s) - mean)).sum::<f64>() / total;
+    let mean_of =
+        |f: &dyn Fn(&S) -> f64| -> f64 { stations.iter().enumerate().map(|(i, s)| simpson_weight(i, stations.len()) * f(s)).sum() };
+    let mean = mean_of(&value);
+    let spread = mean_of(&|s| (value(s) - mean) * (value(s) - mean));
     [mean, spread.max(0.0).sqrt()]
 }
 

@@ -4,7 +4,7 @@ use forcewright_base::units::Dimension;
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
 
 use super::knobs::Knobs;
-use crate::analysis::{Behaviour, measure_scalars};
+use crate::analysis::{Behaviour, measure_scalars, moments};
 use crate::cut::SIDES;
 use crate::design::{Design, Requirements};
 use crate::law::ForceLaw;
@@ -107,23 +107,8 @@ impl Many {
 /// What follows from forces over a window at [`STATIONS`] places, up, down and without friction: the order of [`OF_FORCES`].
 pub(crate) fn of_forces(values: &[f64], wanted: Option<&[f64]>, [from, to]: [f64; 2]) -> [f64; OF_FORCES.len()] {
     let [up, down, still] = [0, 1, 2].map(|i| &values[i * STATIONS..(i + 1) * STATIONS]);
-    let weight = |i: usize| {
-        if i == 0 || i == STATIONS - 1 {
-            1.0
-        } else if i % 2 == 1 {
-            4.0
-        } else {
-            2.0
-        }
-    };
-    let total = 3.0 * (STATIONS - 1) as f64;
-    let mean = |v: &[f64]| v.iter().enumerate().map(|(i, v)| weight(i) * v).sum::<f64>() / total;
-    let spread = |v: &[f64], mean: f64| {
-        let sum: f64 = v.iter().enumerate().map(|(i, v)| weight(i) * (v - mean) * (v - mean)).sum();
-        (sum / total).max(0.0).sqrt()
-    };
     let extent = |v: &[f64]| v.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
-    let (mean_up, mean_down, mean_still) = (mean(up), mean(down), mean(still));
+    let [[mean_up, spread_up], [mean_down, spread_down], [mean_still, _]] = [up, down, still].map(|forces| moments(forces, |f| *f));
     let ([up_min, up_max], [down_min, down_max]) = (extent(up), extent(down));
     let off = |v: &[f64], wanted: &[f64]| v.iter().zip(wanted).map(|(v, w)| (v / w - 1.0).abs()).fold(0.0, f64::max);
     let deviation = wanted.map_or(f64::NAN, |wanted| off(up, wanted).max(off(down, wanted)));
@@ -132,11 +117,11 @@ pub(crate) fn of_forces(values: &[f64], wanted: Option<&[f64]>, [from, to]: [f64
         deviation,
         mean_still,
         mean_up,
-        spread(up, mean_up),
+        spread_up,
         up_max,
         up_min,
         mean_down,
-        spread(down, mean_down),
+        spread_down,
         down_max,
         down_min,
         (mean_up - mean_down) * (to - from),

@@ -1,6 +1,7 @@
 //! From `[optimise]` and the requirements to a search: its goal and its limits.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
+use forcewright_base::quadrature::simpson_weight;
 use forcewright_contract::describe::Section;
 use forcewright_contract::objective::{Goal, Way, goal_of};
 use forcewright_contract::studies::Objective;
@@ -66,7 +67,6 @@ fn scalar(name: &str) -> Option<usize> {
 fn goal(many: &Many, name: &str) -> (task::Goal, Vec<Band>) {
     let both = |level: Option<f64>| [0, 1].map(|i| Band { values: i * STATIONS..(i + 1) * STATIONS, level, half_width: None }).to_vec();
     let wanted = many.wanted_n();
-    let last = (STATIONS - 1) as f64;
     match name {
         "force_deviation" if wanted.iter().all(|w| w.to_bits() == wanted[0].to_bits()) => (task::Goal::HalfWidth, both(Some(wanted[0]))),
         // Without one level: squares, each relative to what is wanted there.
@@ -81,17 +81,8 @@ fn goal(many: &Many, name: &str) -> (task::Goal, Vec<Band>) {
         }
         // (Mean up − mean down) over the level wanted: Simpson's weights.
         "hysteresis" => {
-            let weight = |i: usize| {
-                if i == 0 || i == STATIONS - 1 {
-                    1.0
-                } else if i % 2 == 1 {
-                    4.0
-                } else {
-                    2.0
-                }
-            };
             let level = wanted.iter().sum::<f64>() / wanted.len() as f64;
-            let one = |i: usize, sign: f64| sign * weight(i) / (3.0 * last * level);
+            let one = |i: usize, sign: f64| sign * simpson_weight(i, STATIONS) / level;
             let up = (0..STATIONS).map(|i| (i, one(i, 1.0)));
             let down = (0..STATIONS).map(|i| (STATIONS + i, one(i, -1.0)));
             (task::Goal::Values(up.chain(down).collect()), Vec::new())
