@@ -69,6 +69,12 @@ pub fn ln_1p(x: f64) -> f64 {
     libm::log1p(x)
 }
 
+/// `exp(x) − 1`, without the loss of digits near 0.
+#[inline]
+pub fn exp_m1(x: f64) -> f64 {
+    libm::expm1(x)
+}
+
 /// Complementary error function, `2/√π ∫ₓ^∞ exp(−t²) dt`.
 #[inline]
 pub fn erfc(x: f64) -> f64 {

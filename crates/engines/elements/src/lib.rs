@@ -1,5 +1,8 @@
-//! Machine elements: the material catalogue, line contact, springs. Theory: `docs/theory/elements.md`.
+//! Machine elements: the material catalogue, line contact, springs, cables, grooves and wrap friction. Theory: `docs/theory/elements.md`.
 
+pub mod cables;
+pub mod grooves;
 pub mod hertz;
 pub mod materials;
 pub mod springs;
+pub mod wrap;

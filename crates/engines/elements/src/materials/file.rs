@@ -129,12 +129,12 @@ pub(crate) fn text<'a>(table: &'a DeTable, key: &str) -> Result<&'a str, String>
     optional_text(table, key)?.ok_or_else(|| format!("no `{key}`"))
 }
 
-fn optional_text<'a>(table: &'a DeTable, key: &str) -> Result<Option<&'a str>, String> {
+pub(crate) fn optional_text<'a>(table: &'a DeTable, key: &str) -> Result<Option<&'a str>, String> {
     let Some(value) = table.get(key) else { return Ok(None) };
     value.get_ref().as_str().map(Some).ok_or_else(|| format!("`{key}` is not text"))
 }
 
-fn strings(table: &DeTable, key: &str) -> Result<Vec<String>, String> {
+pub(crate) fn strings(table: &DeTable, key: &str) -> Result<Vec<String>, String> {
     let Some(value) = table.get(key) else { return Ok(Vec::new()) };
     let not_texts = || format!("`{key}` is not a list of texts");
     let list = value.get_ref().as_array().ok_or_else(not_texts)?;
