@@ -88,7 +88,7 @@ impl Many {
         let base = Design { motion, ..design.clone() };
         let lengths = [design.built.min_length_m, design.built.max_length_m];
         let measures = measures(OF_FORCES.iter().chain(&SCALARS), design.requirements.as_ref(), lengths, design.moves());
-        Self { paths, window_m, wanted, outputs, measures, base, knobs }
+        Self { knobs, base, paths, window_m, wanted, outputs, measures }
     }
 
     /// Travels at which forces are computed, m.
