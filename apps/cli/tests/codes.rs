@@ -136,6 +136,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0605", "a warning of the analysis"),
     ("W0606", "a warning of the analysis"),
     ("W0608", "a warning of the analysis"),
+    ("W0609", "a warning of the analysis"),
 ];
 
 /// Edits of the cam example and the code that each must bring.

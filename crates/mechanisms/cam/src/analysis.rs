@@ -8,7 +8,7 @@ use forcewright_elements::hertz::{LIFE_CYCLES, Life, Solid, line_contact, surfac
 
 use crate::cut::{Cut, CutError, SIDES};
 use crate::design::Design;
-use crate::mechanism::{Drive, Instant, Mechanism, NotAssembled, Pose, Sense};
+use crate::mechanism::{Drive, Instant, Mechanism, NotAssembled, Pose, Sense, Stop};
 use crate::metrics::METRICS;
 use crate::motion::{self, Moment, integral};
 use crate::path::{Corner, SidePath, curvature_per_m, frame};
@@ -20,6 +20,9 @@ pub(crate) const STATIONS: usize = 480;
 pub(crate) const PANELS: usize = 400;
 /// How far above the start of its travel a slider is taken where the start itself is singular, relative to the stroke.
 pub(crate) const JUST_ABOVE: f64 = 1e-6;
+
+/// From this part of the stroke on, a start that cannot be left is worth a word.
+pub(crate) const LOCKED_FROM: f64 = 1e-4;
 
 /// Forces at a travel.
 #[derive(Clone, Copy, Debug)]
@@ -39,9 +42,10 @@ pub struct Station {
 }
 
 impl Station {
-    /// Whether its forces are numbers.
-    fn is_determined(&self) -> bool {
-        [&self.still, &self.up, &self.down].iter().all(|i| (i.force_n + i.guide_n).is_finite())
+    /// The sense in which its force is not a number: friction locks the rollers.
+    fn locked(&self) -> Option<Sense> {
+        let all = [(Sense::Frictionless, &self.still), (Sense::Up, &self.up), (Sense::Down, &self.down)];
+        all.into_iter().find(|(_, i)| !(i.force_n + i.guide_n).is_finite()).map(|(sense, _)| sense)
     }
 }
 
@@ -60,8 +64,8 @@ pub struct Behaviour {
     pub window_m: [f64; 2],
     /// Over the window: two intervals per panel.
     pub window: Vec<Station>,
-    /// Where the mechanism could not be assembled any more: travel, and why.
-    pub stopped: Option<(f64, NotAssembled)>,
+    /// Where the mechanism could not be assembled any more, or friction locks it: travel, and why.
+    pub stopped: Option<(f64, Stop)>,
     /// The motion.
     pub motion: Option<Vec<Moment>>,
     /// The slower motion that it is compared with.
@@ -144,14 +148,14 @@ fn let_go(mechanism: &Mechanism, asked: &Release, stations: &[Station], stroke_m
     release(mechanism, &Release { start_m: asked.start_m.max(near), stops_m: [near, stroke_m], ..*asked })
 }
 
-/// Forces at even travels; stops where a brace no longer reaches its path. A scan from the very start begins where the slider comes to rest.
+/// Forces at even travels; stops where a brace no longer reaches its path or friction locks the rollers. A scan from the very start begins where the slider comes to rest.
 fn scan(
     mechanism: &Mechanism,
     [from, to]: [f64; 2],
     intervals: usize,
     free: bool,
     evaluations: &mut u64,
-) -> (Vec<Station>, Option<(f64, NotAssembled)>) {
+) -> (Vec<Station>, Option<(f64, Stop)>) {
     let mut stations: Vec<Station> = Vec::with_capacity(intervals + 1);
     for i in 0..=intervals {
         let s = from + (to - from) * i as f64 / intervals as f64;
@@ -159,15 +163,19 @@ fn scan(
         let at = |s: f64| if free { free_station(mechanism, s, near) } else { station(mechanism, s, near) };
         let found = match at(s) {
             // Springs without tension on a path along which a brace carries nothing: 0/0, whose limit is the force just above.
-            Ok(station) if !station.is_determined() => at(s + JUST_ABOVE * (to - from)),
+            Ok(station) if station.locked().is_some() => at(s + JUST_ABOVE * (to - from)),
             found => found,
         };
+        let found = found.map_err(Stop::from).and_then(|station| match station.locked() {
+            Some(sense) => Err(Stop::Locks(sense)),
+            None => Ok(station),
+        });
         match found {
             Ok(station) => {
                 *evaluations += u64::from(station.pose.evaluations);
                 stations.push(station);
             }
-            // Springs, errors or the corner of an undercut may keep the slider above the start of its travel.
+            // Springs, errors or the corner of an undercut may keep the slider above the start of its travel, or friction lock it there.
             Err(_) if from == 0.0 && stations.is_empty() && i < intervals / 10 => {}
             Err(why) => return (stations, Some((s, why))),
         }

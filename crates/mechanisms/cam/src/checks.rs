@@ -9,6 +9,7 @@ use forcewright_model::{Check, Sense};
 use crate::analysis::{Behaviour, Measured, Station};
 use crate::cut::Cut;
 use crate::design::{Design, Requirements};
+use crate::mechanism::Stop;
 use crate::path::curvature_per_m;
 use crate::rules::{NO_VALUE, Rules, percent};
 
@@ -41,9 +42,10 @@ struct Context<'a> {
 /// Why a value is missing.
 fn unreached(design: &Design, behaviour: &Behaviour) -> String {
     match behaviour.stopped {
-        Some((s, _)) => {
+        Some((s, why)) => {
             let travel = format_si(s, &design.units.travel, 4);
-            format!("the mechanism cannot be assembled at a travel of {travel}; see the status")
+            let what = if matches!(why, Stop::Locks(_)) { "friction locks the mechanism" } else { "the mechanism cannot be assembled" };
+            format!("{what} at a travel of {travel}; see the status")
         }
         None => NO_VALUE.to_owned(),
     }
@@ -93,7 +95,7 @@ impl Context<'_> {
             limit: Some(wanted * (1.0 - 1e-12)),
             sense: Sense::AtLeast,
             display: self.design.units.travel.clone(),
-            basis: "travel for which the cam is cut and the mechanism can be assembled".to_owned(),
+            basis: "travel for which the cam is cut and the mechanism can be assembled and moved".to_owned(),
             fix: "raise `design.stroke`; spring length, cam length and pressure angle grow with it".to_owned(),
             ..base
         };

@@ -201,8 +201,13 @@ pub(crate) const CODES: &[Explanation] = &[
     ),
     code(
         "W0608",
-        "friction holds the disc",
-        "Where the path of a torque cam rises less than friction takes (tan φ ≤ μ), the springs do not turn the disc back by themselves: the torque on the way down is not above zero. Less rolling friction, a smaller `start_radius` or more torque help.",
+        "friction holds the mechanism",
+        "Where the path of a torque cam rises less than friction takes (tan φ ≤ μ), the springs do not turn the disc back by themselves: the torque on the way down is not above zero. Less rolling friction, a smaller `start_radius` or more torque help. With a slider it is the force on the way back; there less friction or larger rollers help.",
+    ),
+    code(
+        "W0609",
+        "friction locks the start of the travel",
+        "Where the path stands nearly across the pull of a brace (or the guide of a disc's roller), rolling resistance turns the force of the cam round: no force, or torque, moves the mechanism from there. At the start of a cam whose springs are not stretched this is so over a short way, μ²A/2 for a constant force; preload, larger rollers or less friction make it shorter. The curves begin where the mechanism moves. Where it locks later, the analysis ends there and says so.",
     ),
     code(
         "W0604",

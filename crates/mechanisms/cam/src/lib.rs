@@ -53,7 +53,7 @@ pub use influence::{Influence, InfluencedStation, ProfileInfluence};
 pub use jet::Jet;
 pub use law::{ForceLaw, LawError};
 pub use measured::{Measured as MeasuredProfile, MeasuredError, Points, RandomProfile, Smoothed, measured as measure_profile};
-pub use mechanism::{Bodies, Drive, Instant, Mechanism, NotAssembled, Pose, Sense, SideForces, SpringMass};
+pub use mechanism::{Bodies, Drive, Instant, Mechanism, NotAssembled, Pose, Sense, SideForces, SpringMass, Stop};
 pub use metrics::METRICS;
 pub use motion::{Law, Moment, Motion, prescribed};
 pub use parts::Making;

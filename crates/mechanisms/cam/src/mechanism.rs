@@ -111,7 +111,22 @@ pub struct NotAssembled {
     pub gap_m: f64,
 }
 
-/// Forces of one side.
+/// Why forces are not known at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// There is no position.
+    NotAssembled(NotAssembled),
+    /// Friction locks the rollers: no force moves the slider that way.
+    Locks(Sense),
+}
+
+impl From<NotAssembled> for Stop {
+    fn from(why: NotAssembled) -> Self {
+        Self::NotAssembled(why)
+    }
+}
+
+/// Forces of one side; not numbers where friction locks the rollers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SideForces {
     /// Between cam and roller along the normal, pushing, N.
@@ -317,7 +332,7 @@ impl Mechanism {
         Ok(self.forces(&self.pose(drive.at)?, drive, sense))
     }
 
-    /// Forces at a position that was found.
+    /// Forces at a position that was found; not numbers where friction locks the rollers in that sense.
     pub fn forces(&self, pose: &Pose, drive: &Drive, sense: Sense) -> Instant {
         let [instant] = self.forces_in(pose, drive, [sense]);
         instant
@@ -405,14 +420,20 @@ impl Mechanism {
             Sense::Down => -m.rolls * self.friction(),
             Sense::Frictionless => 0.0,
         };
-        // N (n − μ t) + T b = needed. Resistance takes from the motion also where the cam would have to pull, which a check names.
+        // N (n − μ t) + T b = needed.
         let solve = |friction: f64| {
             let contact = sum(&[(1.0, m.normal), (-friction, m.along)]);
             let over = 1.0 / cross(contact, m.brace);
             (friction, cross(needs.at_roller, m.brace) * over, cross(contact, needs.at_roller) * over)
         };
         let pushing = solve(friction);
-        let (friction, normal_n, brace_n) = if pushing.1 < 0.0 && friction != 0.0 { solve(-friction) } else { pushing };
+        let (friction, normal_n, brace_n) = match pushing {
+            // The cam would have to pull without friction as well: then resistance acts the other way.
+            (_, normal, _) if normal < 0.0 && friction != 0.0 && solve(0.0).1 < 0.0 => solve(-friction),
+            // Friction alone turns the force of the cam round: no force moves the slider, it locks.
+            (_, normal, _) if normal < 0.0 && friction != 0.0 => (friction, f64::NAN, f64::NAN),
+            _ => pushing,
+        };
         let tangential_n = -friction * normal_n - needs.rim_n;
         (SideForces { normal_n, tangential_n, brace_n }, sum(&[(1.0, needs.at_joint), (brace_n, m.brace)]))
     }

@@ -141,7 +141,7 @@ const PAUSE_STEPS: usize = 20;
 /// Forces over a motion, at even times in each phase; a free slider goes sideways as its mass and the forces on it let it.
 ///
 /// # Errors
-/// [`NotAssembled`] if the mechanism does not reach a place on the way.
+/// [`NotAssembled`] if the mechanism does not reach a place on the way, or friction locks it there.
 pub fn prescribed(mechanism: &Mechanism, motion: &Motion, sideways_m: Option<f64>) -> Result<Vec<Moment>, NotAssembled> {
     let mut all = Vec::new();
     let mut across = sideways_m.map(|x| [x, 0.0]);
@@ -160,7 +160,12 @@ pub fn prescribed(mechanism: &Mechanism, motion: &Motion, sideways_m: Option<f64
             if across.is_some() {
                 drive.acceleration[1] = mechanism.free_acceleration(&here, &drive, phase.sense);
             }
-            all.push(moment(mechanism, &here, &drive, phase.sense, *time));
+            let found = moment(mechanism, &here, &drive, phase.sense, *time);
+            // Friction locks the rollers, or the start is singular.
+            if !(found.moving.force_n + found.resting.force_n).is_finite() {
+                return Err(NotAssembled { side: 0, gap_m: f64::NAN });
+            }
+            all.push(found);
             pose = Some(here);
         }
     }

@@ -78,7 +78,7 @@ fn cross<T: Number>(a: [T; 2], b: [T; 2]) -> T {
 }
 
 impl Mechanism {
-    /// Forces at rest at given travels, m, of a slider on its axis, written over `out`. Each position is sought from the one before it: even
+    /// Forces at rest at given travels, m, of a slider on its axis, written over `out`; not numbers where friction locks the rollers. Each position is sought from the one before it: even
     /// travels in their order take the least time. Returns how often a path was evaluated.
     ///
     /// # Errors
@@ -134,10 +134,13 @@ impl Mechanism {
                 let contact = [0, 1].map(|k| normal[k] - along[k] * T::constant(friction));
                 (cross(contact, brace), cross(contact, at_roller))
             };
-            let (frame, tension) = solve(friction);
-            // Resistance takes from the motion also where the cam would have to pull.
-            let pulls = (cross(at_roller, brace) * frame).value() < 0.0;
-            let (frame, tension) = if pulls { solve(-friction) } else { (frame, tension) };
+            let pulls = |frame: T| (cross(at_roller, brace) * frame).value() < 0.0;
+            let (mut frame, mut tension) = solve(friction);
+            if friction != 0.0 && pulls(frame) {
+                // As in `Mechanism::forces`: the cam would have to pull anyway, or friction locks the rollers.
+                let (unlocked, _) = solve(0.0);
+                (frame, tension) = if pulls(unlocked) { solve(-friction) } else { (T::constant(f64::NAN), tension) };
+            }
             tension / frame * brace[1] + still
         })
     }

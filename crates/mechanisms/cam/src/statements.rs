@@ -3,9 +3,9 @@
 use forcewright_base::units::{format_number, format_si};
 use forcewright_model::{Citation, Statement, Status, StatusKind, Warning};
 
-use crate::analysis::{Behaviour, Measured};
+use crate::analysis::{Behaviour, LOCKED_FROM, Measured};
 use crate::design::{Design, Material};
-use crate::mechanism::SpringMass;
+use crate::mechanism::{Sense, SpringMass, Stop};
 use crate::release::End;
 
 pub(crate) fn statement(title: &str, text: impl Into<String>) -> Statement {
@@ -15,7 +15,15 @@ pub(crate) fn statement(title: &str, text: impl Into<String>) -> Statement {
 /// How the analysis ended.
 pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Status {
     let travel = |s: f64| format_si(s, &design.units.travel, 4);
-    if let Some((s, why)) = behaviour.stopped {
+    if let Some((s, Stop::Locks(sense))) = behaviour.stopped {
+        let way = if sense == Sense::Down { "back" } else { "along its travel" };
+        return Status {
+            kind: StatusKind::NotConverged,
+            message: format!("at a travel of {} friction locks the rollers: no force moves the slider {way}", travel(s)),
+            advice: Some("make `rolling_arm` smaller, the rollers larger, or the braces longer: the pressure angle is too large for so much friction".to_owned()),
+        };
+    }
+    if let Some((s, Stop::NotAssembled(why))) = behaviour.stopped {
         let side = ["right", "left"][why.side];
         return Status {
             kind: StatusKind::NotConverged,
@@ -38,7 +46,10 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Status {
         let (message, advice) = if design.free_guide {
             ("in the motion the free slider runs away from its axis", "guide it, or move it more slowly")
         } else {
-            ("the motion passes places where the mechanism cannot be assembled", "shorten `motion.rise`")
+            (
+                "the motion passes places where the mechanism cannot be assembled, or where friction locks it",
+                "shorten `motion.rise`, or begin later",
+            )
         };
         return Status { kind: StatusKind::NotConverged, message: message.to_owned(), advice: Some(advice.to_owned()) };
     }
@@ -190,10 +201,25 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             ),
         });
     }
+    if let Some(stuck) = behaviour.stations.iter().skip(1).find(|s| s.down.force_n <= 0.0) {
+        let at = format_si(stuck.travel_m, &design.units.travel, 4);
+        let message = format!("from a travel of {at} on the springs do not draw the slider back by themselves: friction holds it");
+        all.push(Warning { code: "W0608", message });
+    }
+    let least = LOCKED_FROM * design.purpose.stroke_m;
+    if let Some(first) = behaviour.stations.first().filter(|s| s.travel_m > least && behaviour.mechanism.pose([0.0; 2]).is_ok()) {
+        let end = format_si(first.travel_m, &design.units.travel, 4);
+        all.push(locked_start(&end, "no force pulls the slider away from there"));
+    }
     all.extend(crate::profile_figures::warning(design));
     all.extend(crate::profile_figures::uncovered(design, behaviour));
     all.extend(sliding(design.friction, measured));
     all
+}
+
+/// A start from which friction lets nothing move.
+pub(crate) fn locked_start(end: &str, what: &str) -> Warning {
+    Warning { code: "W0609", message: format!("up to {end} friction locks the rollers: {what}; begin beyond it") }
 }
 
 /// Rollers that slide.

@@ -87,6 +87,7 @@ pub(crate) fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagno
             [room.value[0].si, room.value[1].si]
         }),
         arm_m: si(&section.rolling_arm).unwrap_or(0.0),
+        gravity_m_per_s2: design.built.gravity_m_per_s2,
         offers,
         most_springs: section.springs_max.as_ref().map_or(6, |c| c.value),
         rollers_m,

@@ -19,7 +19,7 @@ pub(crate) mod study;
 pub use analysis::{Behaviour, Station};
 pub use cut::{Cut, CutError, Purpose};
 pub use design::{Built, Design};
-pub use mechanism::{Bodies, Corner, Drive, Instant, Mechanism, NotAssembled, Pose};
+pub use mechanism::{Bodies, Corner, Drive, Instant, Mechanism, NotAssembled, Pose, Stop};
 pub use motion::{Moment, prescribed};
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};

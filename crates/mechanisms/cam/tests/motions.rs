@@ -64,3 +64,25 @@ fn keys_of_another_law_are_refused() {
         .filter(|l| !["mass", "slider_mass", "brace_mass", "roller_mass", "hanging_mass"].iter().any(|k| l.starts_with(&format!("{k} ="))));
     assert_eq!(code(&massless.collect::<Vec<_>>().join("\n"), &["motion.pull=60 N"]).as_deref(), Some("E0611"));
 }
+
+/// With so much rolling resistance that it alone turns the force of the cam round, no force moves the slider: eq. (6) has a negative
+/// denominator there, and once a force was computed all the same. Near the start the mechanism locks first.
+#[test]
+fn friction_that_locks_is_no_force() {
+    let outcome = solve(
+        include_str!("../../../../examples/cam/sanchez-2-springs.toml"),
+        &["design.rolling_arm=8 mm", "requirements.window=[\"40 mm\", \"210 mm\"]"],
+    )
+    .expect("a design");
+    let warned = outcome.warnings.iter().any(|w| w.code == "W0609") || outcome.status.message.contains("locks");
+    assert!(warned, "{:?} {:?}", outcome.status, outcome.warnings);
+    let up = outcome.curves.iter().find(|c| c.name == "force").and_then(|c| c.branches.iter().find(|b| b.name == "up")).expect("a force");
+    // Where it moves, resistance takes from what pulls it: never less than without friction.
+    let still = outcome
+        .curves
+        .iter()
+        .find(|c| c.name == "force")
+        .and_then(|c| c.branches.iter().find(|b| b.name == "without_friction"))
+        .expect("a force");
+    assert!(up.y.iter().zip(&still.y).all(|(up, still)| up >= still));
+}

@@ -101,8 +101,12 @@ impl Knobs {
     /// Changes a copy of the design.
     pub(super) fn apply(&self, x: &[f64], design: &mut Design) {
         let mut file = self.file;
-        for (knob, x) in self.each.iter().zip(x) {
-            self.turn(*knob, *x, design, &mut file);
+        // Rollers first: a coefficient of rolling friction is an arm over their radius.
+        let is_roller = |knob: &Knob| matches!(knob, Knob::RollerDiameter);
+        for rollers in [true, false] {
+            for (knob, x) in self.each.iter().zip(x).filter(|(knob, _)| is_roller(knob) == rollers) {
+                self.turn(*knob, *x, design, &mut file);
+            }
         }
         // What several knobs may change together.
         let built = &mut design.built;

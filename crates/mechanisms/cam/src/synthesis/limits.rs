@@ -47,7 +47,8 @@ fn loosened(asked: &Asked, knob: Knob, factor: f64) -> Option<Asked> {
 /// The least loosening that helps, a little more by `slack`, and what is asked then.
 pub(super) fn relaxed(asked: &Asked, knob: Knob, slack: f64, length: &Unit) -> Option<(Relaxation, Asked)> {
     let helps = |factor: f64| loosened(asked, knob, factor).is_some_and(|other| !picked(&other, 1).is_empty());
-    if !helps(FARTHEST) {
+    // Where sizes are found without loosening, this limit does not block: what misses is seen by the analysis only.
+    if helps(1.0) || !helps(FARTHEST) {
         return None;
     }
     let (mut low, mut high) = (1.0, FARTHEST);

@@ -31,6 +31,8 @@ pub(super) struct Asked {
     /// Width and height.
     pub room_m: [f64; 2],
     pub arm_m: f64,
+    /// Along the travel, m/s²: the springs have weight.
+    pub gravity_m_per_s2: f64,
     pub offers: Vec<Offer>,
     pub most_springs: u32,
     pub rollers_m: Vec<f64>,
@@ -201,7 +203,7 @@ fn looked_at(asked: &Asked, size: Size) -> Option<Size> {
     let spring = Spring {
         law: SpringLaw::Linear { rate_n_per_m: size.count * size.rate_n_per_m, rest_m: size.rest_m },
         stretch_m: 0.0,
-        mass_kg: 0.0,
+        mass_kg: size.count * size.spring_kg,
     };
     let springs = Bank::new(vec![spring], true);
     let purpose = Purpose {
@@ -228,7 +230,7 @@ fn looked_at(asked: &Asked, size: Size) -> Option<Size> {
         arm_m: asked.arm_m,
         springs,
         bodies,
-        gravity_m_per_s2: 0.0,
+        gravity_m_per_s2: asked.gravity_m_per_s2,
         rise_m: cut.rise_m(),
     };
     let [from, to] = asked.window_m.unwrap_or([0.0, asked.stroke_m]);

@@ -6,7 +6,7 @@ use forcewright_base::maths;
 
 use super::cut::{Cut, CutError};
 use super::design::Design;
-use super::mechanism::{Instant, Mechanism, NotAssembled, Pose};
+use super::mechanism::{Instant, Mechanism, NotAssembled, Pose, Stop};
 use super::motion::{Moment, prescribed};
 use super::outline;
 use crate::analysis::{JUST_ABOVE, Measured, PANELS, STATIONS, contact_pressure, extent, moments};
@@ -35,6 +35,12 @@ impl Station {
     fn all(&self) -> [&Instant; 3] {
         [&self.still, &self.up, &self.down]
     }
+
+    /// The sense in which its torque is not a number: friction locks the rollers.
+    fn locked(&self) -> Option<Sense> {
+        let senses = [Sense::Frictionless, Sense::Up, Sense::Down];
+        senses.into_iter().zip(self.all()).find(|(_, i)| !i.torque_nm.is_finite()).map(|(sense, _)| sense)
+    }
 }
 
 /// What a design does.
@@ -48,8 +54,8 @@ pub struct Behaviour {
     pub window_rad: [f64; 2],
     /// Over the window: two intervals per panel.
     pub window: Vec<Station>,
-    /// Where no roller stands on the path any more: turn, and why.
-    pub stopped: Option<(f64, NotAssembled)>,
+    /// Where no roller stands on the path any more, or friction locks it: turn, and why.
+    pub stopped: Option<(f64, Stop)>,
     /// The motion.
     pub motion: Option<Vec<Moment>>,
     /// Times the path was evaluated.
@@ -85,26 +91,25 @@ impl Behaviour {
 }
 
 /// Forces at even turns. A scan from the very start begins where the roller comes to rest.
-fn scan(
-    mechanism: &Mechanism,
-    [from, to]: [f64; 2],
-    intervals: usize,
-    evaluations: &mut u64,
-) -> (Vec<Station>, Option<(f64, NotAssembled)>) {
+fn scan(mechanism: &Mechanism, [from, to]: [f64; 2], intervals: usize, evaluations: &mut u64) -> (Vec<Station>, Option<(f64, Stop)>) {
     let mut stations: Vec<Station> = Vec::with_capacity(intervals + 1);
     for i in 0..=intervals {
         let turn = from + (to - from) * i as f64 / intervals as f64;
         let found = match station(mechanism, turn) {
             // Springs without tension on a path that leaves straight outwards: 0/0, whose limit is the torque just above.
-            Ok(s) if s.all().iter().any(|i| !i.torque_nm.is_finite()) => station(mechanism, turn + JUST_ABOVE * (to - from)),
+            Ok(s) if s.locked().is_some() => station(mechanism, turn + JUST_ABOVE * (to - from)),
             found => found,
         };
+        let found = found.map_err(Stop::NotAssembled).and_then(|station| match station.locked() {
+            Some(sense) => Err(Stop::Locks(sense)),
+            None => Ok(station),
+        });
         match found {
             Ok(station) => {
                 *evaluations += u64::from(station.pose.evaluations);
                 stations.push(station);
             }
-            // The corner of an undercut may keep the roller beyond the start.
+            // The corner of an undercut may keep the roller beyond the start, or friction lock it there.
             Err(_) if from == 0.0 && stations.is_empty() && i < intervals / 10 => {}
             Err(why) => return (stations, Some((turn, why))),
         }

@@ -6,6 +6,7 @@ use forcewright_model::{Check, Sense};
 
 use super::analysis::{Behaviour, Station};
 use super::design::Design;
+use super::mechanism::Stop;
 use crate::analysis::{Measured, extent};
 use crate::design::Requirements;
 use crate::rules::{NO_VALUE, Rules, percent};
@@ -19,7 +20,10 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
         measured,
         missing: behaviour.stopped.map_or_else(
             || NO_VALUE.to_owned(),
-            |(at, _)| format!("no roller stands on the disc at a turn of {}; see the status", turn(at)),
+            |(at, why)| {
+                let what = if matches!(why, Stop::Locks(_)) { "friction locks the disc" } else { "no roller stands on the disc" };
+                format!("{what} at a turn of {}; see the status", turn(at))
+            },
         ),
         arm_m: design.built.arm_m,
         lengths_m: design.built.lengths_m,
@@ -75,7 +79,7 @@ fn turned(design: &Design, rules: &Rules<'_>, requirements: &Requirements, behav
         limit: Some(wanted * (1.0 - 1e-12)),
         sense: Sense::AtLeast,
         display: design.units.travel.clone(),
-        basis: "turn for which the disc is cut and the rollers stand on it".to_owned(),
+        basis: "turn for which the disc is cut, the rollers stand on it, and it can be turned".to_owned(),
         fix: "raise `design.turn`; spring length and disc grow with it".to_owned(),
         ..rules.base("CAM015", "turn", "Turn", "undercut_turn")
     };

@@ -102,6 +102,15 @@ pub struct NotAssembled {
     pub gap_m: f64,
 }
 
+/// Why forces are not known at a turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// There is no position.
+    NotAssembled(NotAssembled),
+    /// Friction locks the rollers: no torque turns the disc that way.
+    Locks(Sense),
+}
+
 /// Steps of Newton's method for a position.
 const MOST_STEPS: u32 = 60;
 
@@ -183,7 +192,8 @@ impl Mechanism {
         self.forces(pose, [0.0; 2], sense)
     }
 
-    /// Forces in a motion of the disc at a position that was found. Friction acts against the turn that the sense says.
+    /// Forces in a motion of the disc at a position that was found. Friction acts against the turn that the sense says; where it locks the
+    /// rollers there are no forces, and they are not numbers.
     pub fn forces(&self, pose: &Pose, [speed, acceleration]: Drive, sense: Sense) -> Instant {
         let b = &self.bodies;
         let [radius, first, second] = pose.radius_m;
@@ -215,16 +225,19 @@ impl Mechanism {
                 let normal = (needed - rim * t_r + out * guide * sign * rim * t_a) / (a_r - out * guide * sign * a_a);
                 (normal, normal * a_a + rim * t_a)
             };
-            let (normal, across) = one(1.0);
-            if across >= 0.0 { (normal, across) } else { one(-1.0) }
+            let (up, down) = (one(1.0), one(-1.0));
+            if up.1 >= 0.0 { Some(up) } else { Some(down).filter(|(_, across)| *across <= 0.0) }
         };
         let (mut friction, guide) = (way * self.friction(), self.guide_friction);
-        let (mut normal_n, mut across) = solve(friction, guide);
-        // Resistance takes from the motion also where the cam would have to pull, which a check names.
-        if normal_n < 0.0 && friction != 0.0 {
+        let mut found = solve(friction, guide);
+        if way != 0.0 && found.is_none_or(|(normal, _)| normal < 0.0) {
+            // Either the cam would have to pull without friction as well, and resistance acts the other way; or friction alone turns its
+            // force round: no torque moves the disc, it locks.
+            let pulls = solve(0.0, 0.0).is_some_and(|(normal, _)| normal < 0.0);
             friction = -friction;
-            (normal_n, across) = solve(friction, guide);
+            found = if pulls { solve(friction, guide) } else { None };
         }
+        let (normal_n, across) = found.unwrap_or([f64::NAN; 2].into());
         let torque_nm = b.disc_kg_m2 * acceleration + 2.0 * (radius * across + b.roller_kg_m2 * spin);
         Instant { torque_nm, normal_n, tangential_n: rim - friction * normal_n, guide_n: across, spring_n, spring_m }
     }

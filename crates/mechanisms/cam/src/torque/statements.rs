@@ -5,13 +5,23 @@ use forcewright_model::{Citation, Statement, Status, StatusKind, Warning};
 
 use super::analysis::Behaviour;
 use super::design::Design;
-use crate::analysis::Measured;
-use crate::statements::{cited, sliding, statement};
+use super::mechanism::Stop;
+use crate::analysis::{LOCKED_FROM, Measured};
+use crate::mechanism::Sense;
+use crate::statements::{cited, locked_start, sliding, statement};
 
 /// How the analysis ended.
 pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Status {
     let turn = |rad: f64| format_si(rad, &design.units.travel, 4);
-    if let Some((at, why)) = behaviour.stopped {
+    if let Some((at, Stop::Locks(sense))) = behaviour.stopped {
+        let way = if sense == Sense::Down { "back" } else { "against the springs" };
+        return Status {
+            kind: StatusKind::NotConverged,
+            message: format!("at a turn of {} friction locks the rollers: no torque turns the disc {way}", turn(at)),
+            advice: Some("make `rolling_arm` or `guide_friction` smaller, or `start_radius` larger: the pressure angle is too large for so much friction".to_owned()),
+        };
+    }
+    if let Some((at, Stop::NotAssembled(why))) = behaviour.stopped {
         return Status {
             kind: StatusKind::NotConverged,
             message: format!(
@@ -113,6 +123,10 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
                 turn(stuck.turn_rad())
             ),
         });
+    }
+    let least = LOCKED_FROM * design.purpose.turn_rad;
+    if let Some(first) = behaviour.stations.first().filter(|s| s.turn_rad() > least && behaviour.mechanism.pose(0.0).is_ok()) {
+        all.push(locked_start(&turn(first.turn_rad()), "no torque turns the disc away from there"));
     }
     all.extend(sliding(design.friction, measured));
     all

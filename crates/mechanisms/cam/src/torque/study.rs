@@ -174,9 +174,13 @@ impl Many {
     fn apply(&self, x: &[f64], design: &mut Design) {
         let built = &mut design.built;
         let [mut turns, mut pitch_m] = self.screw;
+        // Rollers first: a coefficient of rolling friction is an arm over their radius.
+        if let Some((_, diameter_m)) = self.knobs.iter().zip(x).find(|(knob, _)| matches!(knob, Knob::RollerDiameter)) {
+            built.roller_m = 0.5 * diameter_m;
+        }
         for (knob, x) in self.knobs.iter().zip(x) {
             match *knob {
-                Knob::RollerDiameter => built.roller_m = 0.5 * x,
+                Knob::RollerDiameter => {}
                 Knob::RollingArm => built.arm_m = *x,
                 Knob::RollingFriction => built.arm_m = x * built.roller_m,
                 Knob::GuideFriction => built.guide_friction = *x,
