@@ -82,7 +82,7 @@ impl Synthesised {
             row
         };
         StudyTable {
-            caption: "Designs, the best first. Room: beams, pads and blocks of all copies over the travel".to_owned(),
+            caption: "Designs, the best first. Room: of all parts and their copies over the travel".to_owned(),
             columns,
             rows: self.designs.iter().enumerate().map(row).collect(),
         }
