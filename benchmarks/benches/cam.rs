@@ -1,7 +1,7 @@
 //! The work that users of cam mechanisms wait for, on the prototype with two springs of Sánchez-Salinas et al. 2022.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use forcewright::cam::{Behaviour, Cam, Design, Drive, Pose, ProfileInfluence, RandomProfile, Sense, Spec};
+use forcewright::cam::{Behaviour, Cam, Design, Drive, Kind, Pose, ProfileInfluence, RandomProfile, Sense, Spec};
 use forcewright::contract::family::Mechanism;
 use forcewright::contract::project::Project;
 use forcewright::contract::read;
@@ -18,7 +18,7 @@ fn text() -> &'static str {
 fn design() -> Design {
     let mut project = Project::from_text("sanchez-2-springs.toml", text(), &Choices::default());
     let mut spec: Spec = read::read(&project.tree, project.root, &mut project.diagnostics);
-    Cam::resolve(&mut spec, &mut project.diagnostics).expect("the example is understood")
+    Cam::resolve(&mut spec, &mut project.diagnostics).and_then(Kind::slider).expect("the example is understood")
 }
 
 /// Even travels over the stroke without its undercut start.

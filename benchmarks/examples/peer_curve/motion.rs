@@ -4,7 +4,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use forcewright::cam::{Cam, Design, Drive, Mechanism, Pose, Sense, Spec};
+use forcewright::cam::{Cam, Design, Drive, Kind, Mechanism, Pose, Sense, Spec};
 use forcewright::contract::family::Mechanism as _;
 use forcewright::contract::project::Project;
 use forcewright::contract::read;
@@ -33,7 +33,7 @@ impl Case {
         let choices = Choices { variant: Some("paper".to_owned()), set: Vec::new() };
         let mut project = Project::from_text("sanchez-2-springs.toml", text, &choices);
         let mut spec: Spec = read::read(&project.tree, project.root, &mut project.diagnostics);
-        let design = Cam::resolve(&mut spec, &mut project.diagnostics).expect("the example is understood");
+        let design = Cam::resolve(&mut spec, &mut project.diagnostics).and_then(Kind::slider).expect("the example is understood");
         let mechanism = design.mechanism(&design.cut().expect("a cam"));
         let motion = design.motion.expect("a motion");
         let system = half(&design, &mechanism, &motion);

@@ -75,6 +75,16 @@ pub enum Kind {
     Disc(Box<torque::Design>),
 }
 
+impl Kind {
+    /// The design with a slider; none of a disc.
+    pub fn slider(self) -> Option<Design> {
+        match self {
+            Self::Slider(design) => Some(*design),
+            Self::Disc(_) => None,
+        }
+    }
+}
+
 impl Family for Cam {
     type Spec = Spec;
     type Design = Kind;
