@@ -147,7 +147,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "E0614",
         "the outline of the disc does not close",
-        "Two equal lobes share a whole turn. From the end of a lobe the outline goes over a nose and straight into a seat, in which the roller of the other lobe rests at the start; no roller uses that part, but it needs room beside the rollers. The message names the largest turn that leaves it.",
+        "Two equal lobes share a whole turn. From the end of a lobe the outline goes over a nose and straight into a seat, in which the roller of the other lobe rests at the start; no roller uses that part, but it needs room beside the rollers. The message names turns, rollers and a `start_radius` that were tried and leave it.",
     ),
     code(
         "E0615",

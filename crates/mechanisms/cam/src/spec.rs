@@ -271,8 +271,8 @@ pub(crate) const SPRING_MASSES: &[Word] = &[
 
 const LARGEST_M: f64 = 10.0;
 /// Of a torque cam: two lobes share a whole turn.
-const LARGEST_TURN_RAD: f64 = 3.0;
-const SMALLEST_TURN_RAD: f64 = 0.01;
+pub(crate) const LARGEST_TURN_RAD: f64 = 3.0;
+pub(crate) const SMALLEST_TURN_RAD: f64 = 0.01;
 const SMALLEST_M: f64 = 1e-4;
 /// Of a curve.
 const MOST_POINTS: usize = 500;

@@ -8,10 +8,12 @@ pub(crate) mod checks;
 mod cut;
 pub(crate) mod design;
 pub(crate) mod figures;
+mod losses;
 mod mechanism;
 mod motion;
 pub(crate) mod outline;
 pub(crate) mod parts;
+mod room;
 mod scene;
 pub(crate) mod statements;
 pub(crate) mod study;
@@ -41,13 +43,15 @@ pub(crate) fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
     };
     progress(1.0);
     let measured = analysis::measure(design, &behaviour);
+    let mut checks = checks::checks(design, &behaviour, &measured);
+    losses::advise(design, &behaviour, &mut checks);
     let outcome = Outcome {
         mechanism: Cam::ID,
         title: design.title.clone(),
         status: statements::status(design, &behaviour),
         error_estimate: None,
         metrics: crate::metrics_of(design.requirements.as_ref(), &design.units, &measured),
-        checks: checks::checks(design, &behaviour, &measured),
+        checks,
         curves: figures::curves(design, &behaviour),
         counters: vec![
             Counter { name: "stations", count: (behaviour.stations.len() + behaviour.window.len()) as u64 },

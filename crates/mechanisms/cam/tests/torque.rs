@@ -592,3 +592,176 @@ fn studies_see_the_analysis() {
     assert!(understood.task(&all, Purpose::Search, &mut said).is_none());
     assert_eq!(said.in_file_order().iter().map(|d| d.code).collect::<Vec<_>>(), ["E0616"]);
 }
+
+/// A project without its requirements and motion, which have turns of their own, for another torque and turn.
+fn with_torque(project: &str, torque_nm: f64, turn_deg: f64) -> String {
+    let (head, rest) = project.split_once("[requirements]").expect("a table");
+    let (_, rest) = rest.split_once("[material]").expect("a table");
+    let (rest, _) = rest.split_once("[motion]").expect("a table");
+    assert!(rest.contains("turn = \"120 deg\"") && rest.contains("for_torque = \"2 N*m\""));
+    let rest = rest.replacen("turn = \"120 deg\"", &format!("turn = \"{turn_deg} deg\""), 1);
+    format!("{head}[material]{}", rest.replacen("for_torque = \"2 N*m\"", &format!("for_torque = \"{torque_nm} N*m\""), 1))
+}
+
+/// The analysis, or the help of what refuses it.
+fn tried(text: &str) -> Result<Analysis, String> {
+    let mut project = Project::from_text("a.toml", text, &Choices::default());
+    let understood = Entry::<Cam>::new().understand(&mut project);
+    let understood = understood.ok_or_else(|| {
+        let all = project.diagnostics.in_file_order();
+        all.iter().map(|d| format!("{} {}", d.code, d.help.as_deref().unwrap_or_default())).collect::<Vec<_>>().join("\n")
+    })?;
+    for part in understood.parts().expect("parts").parts {
+        part.outline.check(1e-9).expect("a sound outline");
+        part.cutouts.iter().for_each(|c| c.check(1e-9).expect("a sound cutout"));
+    }
+    Ok(understood.analyse(&mut |_| true))
+}
+
+/// By how much the drawn cam keeps clear of both rollers over all frames, m: its corners, and the chords between them.
+fn clearance_m(analysis: &Analysis) -> [f64; 2] {
+    let film = analysis.figures.iter().find_map(|f| match &f.content {
+        FigureContent::Film(film) => Some(film),
+        _ => None,
+    });
+    let mut least = [f64::INFINITY; 2];
+    for frame in &film.expect("it moves").frames {
+        let cam = frame.items.iter().find_map(|i| match i {
+            Item::Body { corners, role: Role::Named(Look::Plate, "cam") } => Some(corners),
+            _ => None,
+        });
+        let cam = cam.expect("a cam");
+        for item in &frame.items {
+            let Item::Disc { centre, radius_m, role: Role::Named(Look::Moving, "rollers") } = item else { continue };
+            let corners = cam.iter().map(|p| maths::hypot(p[0] - centre[0], p[1] - centre[1])).fold(f64::INFINITY, f64::min);
+            least = [least[0].min(corners - radius_m), least[1].min(distance(cam, *centre) - radius_m)];
+        }
+    }
+    least
+}
+
+/// The turn that a refusal names, degrees.
+fn named_turn(help: &str) -> f64 {
+    let word = help.split("turn of ").nth(1).and_then(|t| t.split(' ').next()).and_then(|t| t.parse::<f64>().ok());
+    word.unwrap_or_else(|| panic!("no turn: {help}"))
+}
+
+/// Rises of 2 to 40 mm over short and long turns: no roller meets the outline, or a turn is named for which that is so. Only long turns
+/// leave too little room. The corners of what is drawn lie on the outline; a chord between two where it is hollow comes nearer by its sagitta,
+/// in a ring over 170°, where 240 chords in squared steps are up to 0.03 rad long, 0.08 m 0.03²/8 = 9 µm.
+#[test]
+fn outlines_close_for_any_rise() {
+    let clear = |analysis: &Analysis, what: &str| {
+        let [corners, chords] = clearance_m(analysis);
+        assert!(corners > -1e-9 && chords > -9e-6, "{what}: {corners} {chords}");
+    };
+    let mut refusals = 0;
+    for (project, rises) in
+        [(EXAMPLE.to_owned(), &[2.0, 3.0, 4.0, 6.0, 10.0, 15.0, 20.0, 30.0, 40.0][..]), (ring(), &[2.0, 4.0, 6.0, 10.0, 20.0])]
+    {
+        for rise_mm in rises {
+            // Both have springs that are deformed by 20 mm at the start.
+            let deformed = 0.02 + 0.002 * rise_mm;
+            for turn in [40.0, 60.0, 80.0, 100.0, 120.0, 140.0, 160.0, 170.0] {
+                let torque = 0.5 * 1400.0 * (deformed * deformed - 0.02 * 0.02) / f64::to_radians(turn);
+                let what = format!("{rise_mm} mm over {turn}°, {}", project.contains("compression"));
+                match tried(&with_torque(&project, torque, turn)) {
+                    Ok(analysis) => clear(&analysis, &what),
+                    Err(help) => {
+                        assert!(help.contains("E0614") && turn > 150.0, "{what}: {help}");
+                        let other = tried(&with_torque(&project, torque, named_turn(&help)));
+                        clear(&other.unwrap_or_else(|e| panic!("{what}: {help} {e}")), &what);
+                        refusals += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(refusals > 5, "{refusals}");
+}
+
+/// A torque at which some turns between others that fit were refused: the long one that does not fit names one that does.
+#[test]
+fn turns_fit_up_to_the_one_that_is_named() {
+    for turn in [40.0, 60.0, 100.0, 120.0, 150.0] {
+        assert!(tried(&with_torque(EXAMPLE, 0.5, turn)).is_ok(), "{turn}");
+    }
+    let help = tried(&with_torque(EXAMPLE, 0.5, 170.0)).expect_err("no room");
+    assert!(named_turn(&help) > 150.0, "{help}");
+    // Rollers that leave room on both sides of a turn: both are named.
+    let large = |turn: f64| with_torque(EXAMPLE, 0.5, turn).replacen("\"20 mm\"", "\"30 mm\"", 1);
+    let with = |turn: f64| large(turn).replacen("0.5 N*m", &format!("{} N*m", 0.0588 / turn.to_radians()), 1);
+    let help = tried(&with(105.0)).expect_err("no room");
+    assert!(help.contains("longer turn of"), "{help}");
+}
+
+/// Every change that the help of E0614 names closes the outline.
+#[test]
+fn what_is_said_to_close_the_outline_does() {
+    let text = with_torque(EXAMPLE, 0.065, 170.0);
+    let help = tried(&text).expect_err("no room");
+    let value =
+        |after: &str| help.split(after).nth(1).and_then(|t| t.split([';', ',']).next()).map(|t| t.trim_end_matches(['"', ')']).to_owned());
+    let rollers = value("rollers of ").unwrap_or_else(|| panic!("{help}"));
+    assert!(tried(&text.replacen("roller_diameter = \"20 mm\"", &format!("roller_diameter = \"{rollers}\""), 1)).is_ok(), "{help}");
+    let radius = value("`start_radius` of ").unwrap_or_else(|| panic!("{help}"));
+    assert!(tried(&text.replacen("start_radius = \"40 mm\"", &format!("start_radius = \"{radius}\""), 1)).is_ok(), "{help}");
+}
+
+/// What CAM004 advises keeps the limit, and nothing is advised that does not.
+#[test]
+fn the_advice_about_the_hysteresis_keeps_its_limit() {
+    let with = |rolling: &str, guide: f64, compensated: bool| {
+        let friction = format!("{rolling}\nguide_friction = {guide}");
+        let text = EXAMPLE.replacen("rolling_friction = 0.002", &friction, 1);
+        let for_friction = if compensated { "for_friction = 0.002\nfor_torque = " } else { "for_torque = " };
+        analysed(&text.replacen("for_torque = ", for_friction, 1))
+    };
+    let check = |analysis: &Analysis| analysis.outcome.checks.iter().find(|c| c.code == "CAM004").expect("a check").clone();
+    let advice = |rolling: &str, guide: f64, compensated: bool| check(&with(rolling, guide, compensated)).advice.expect("missed");
+    let number =
+        |text: &str, after: &str| text.split(after).nth(1).and_then(|t| t.split([' ', ',']).next()).and_then(|t| t.parse::<f64>().ok());
+    for compensated in [false, true] {
+        // The guides alone are too much: no arm is named, and the guide friction that is named works.
+        let text = advice("rolling_friction = 0.002", 0.2, compensated);
+        let share = number(&text, "guides alone take ").unwrap_or_else(|| panic!("{text}"));
+        assert!(share > 3.0 && !text.contains("arm"), "{text}");
+        if !compensated {
+            let alone = check(&with("rolling_friction = 0.0", 0.2, false)).value.expect("a value");
+            assert!((share - 100.0 * alone).abs() < 5e-3 * share, "{share} {alone}");
+        }
+        let guide = number(&text, "`guide_friction` of ").unwrap_or_else(|| panic!("{text}"));
+        assert!(check(&with("rolling_friction = 0.002", guide, compensated)).advice.is_none(), "{text}");
+        assert!(check(&with("rolling_friction = 0.002", 1.03 * guide, compensated)).advice.is_some(), "{text}");
+        // Rolling is none of it.
+        let text = advice("rolling_friction = 0.0", 0.2, compensated);
+        assert!(text.contains("all of it is friction of the guides") && !text.contains("arm"), "{text}");
+    }
+    // Rolling is too much: the arm works, beside a little friction of the guides.
+    for guide in [0.0, 0.02] {
+        let text = advice("rolling_friction = 0.02", guide, false);
+        let arm = number(&text, "an arm of the rolling resistance of ").unwrap_or_else(|| panic!("{text}"));
+        for (part, kept) in [(1.0, true), (1.03, false)] {
+            let arm = format!("rolling_arm = \"{} mm\"", part * arm);
+            assert_eq!(check(&with(&arm, guide, false)).advice.is_none(), kept, "{text}");
+        }
+    }
+    // Either alone is too much.
+    let text = advice("rolling_friction = 0.02", 0.2, false);
+    let [arm, guide] = ["resistance of ", "`guide_friction` of "].map(|after| number(&text, after).unwrap_or_else(|| panic!("{text}")));
+    assert!(check(&with(&format!("rolling_arm = \"{arm} mm\""), guide, false)).advice.is_none(), "{text}");
+}
+
+/// Springs that are slack at the start are named as such, and rollers that meet are told apart.
+#[test]
+fn springs_and_rollers_that_do_not_suit_are_told() {
+    let help = |text: &str| tried(text).expect_err("refused");
+    let slack = help(&EXAMPLE.replacen("for_rest_length = \"60 mm\"", "for_rest_length = \"90 mm\"", 1));
+    assert!(slack.contains("tense at the start") && slack.contains("at least") && !slack.contains("0 deg"), "{slack}");
+    let slack = help(&ring().replacen("for_rest_length = \"150 mm\"", "for_rest_length = \"110 mm\"", 1));
+    assert!(slack.contains("tense at the start") && slack.contains("at most"), "{slack}");
+    for torque in [20.0, 7.3] {
+        let meet = help(&with_torque(&ring(), torque, 120.0));
+        assert!(meet.contains("E0607") && meet.matches("shorter turn").count() <= 1, "{meet}");
+    }
+}

@@ -46,7 +46,7 @@ pub enum CutError {
     },
     /// The springs do no work at the start or lose their force on the way.
     SpringsGiveNoForce {
-        /// Turn reached, rad.
+        /// Zero where they give none at the start; else the turn whose work they do not store, rad.
         turn_rad: f64,
     },
 }
@@ -170,7 +170,7 @@ impl Cut {
     fn integrate(&self) -> Result<Table<1>, CutError> {
         let end = (1.0 + BEYOND) * self.purpose.turn_rad;
         let energy = self.purpose.law.work_j(end) + self.store().energy_j(self.range_m[0]);
-        let guess = self.store().deformation_m(energy).ok_or(CutError::SpringsGiveNoForce { turn_rad: 0.0 })?;
+        let guess = self.store().deformation_m(energy).ok_or(CutError::SpringsGiveNoForce { turn_rad: self.purpose.turn_rad })?;
         let step = (guess - self.range_m[0]) / STEPS as f64;
         let kinks: Vec<f64> = self.purpose.law.kinks_m().filter(|k| *k > 0.0).collect();
         let admit = |rows: usize, state: &[f64; 1], next: &[f64; 1]| {

@@ -7,7 +7,7 @@ use forcewright_base::units::{Dimension, Unit, format_si};
 
 use super::cut::{Cut, CutError, Purpose};
 use super::mechanism::{Bodies, Mechanism};
-use super::outline;
+use super::{outline, room};
 use crate::design::profile::{LawSlots, TORQUE, compensated, law_and_springs};
 use crate::design::{
     self, DisplayUnits, Material, Requirements, Wanted, materials_of, of_disc, place_of, required, rolling_arm, si, unit_or, window_within,
@@ -112,7 +112,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     let cut = match Cut::new(purpose.clone()) {
         Ok(cut) => Arc::new(cut),
         Err(error) => {
-            diagnostics.push(cannot_be_cut(&error, spec));
+            diagnostics.push(cannot_be_cut(&error, spec, extension));
             return None;
         }
     };
@@ -213,26 +213,23 @@ fn fits(spec: &Spec, design: &Design, cut: &Arc<Cut>, diagnostics: &mut Diagnost
     if least < design.cut_roller_m {
         let at = place(spec.design.roller_diameter.as_ref().map(|r| r.span));
         diagnostics.push(
-            Diagnostic::error("E0607", at, "the rollers run into each other")
-                .label("where they come closest to the shaft")
-                .help("choose a larger `start_radius` or smaller rollers, and with compression springs a shorter turn"),
+            Diagnostic::error("E0607", at, "the rollers run into each other").label("where they come closest to the shaft").help(
+                if design.built.extension {
+                    "choose a larger `start_radius` or smaller rollers"
+                } else {
+                    "choose a larger `start_radius`, smaller rollers or a shorter turn"
+                },
+            ),
         );
         return;
     }
     let start = outline::start_m(&mechanism);
     let Some(closing) = outline::closing(&mechanism, start, to) else {
-        let turn = outline::largest_turn_rad(&mechanism, start);
         let at = place(spec.design.turn.as_ref().map(|t| t.span));
-        let shown = format_si(turn, &design.units.travel, 3);
-        let help = if turn > 0.0 {
-            format!("it does up to a turn of {shown}; smaller rollers, a larger `start_radius` or more preload leave more room")
-        } else {
-            "choose smaller rollers, a larger `start_radius` or springs with more preload".to_owned()
-        };
         diagnostics.push(
             Diagnostic::error("E0614", at, "the outline does not find back from the end of a lobe to the start of the other")
                 .label("two lobes and what joins them share a whole turn")
-                .help(help),
+                .help(room::advice(design)),
         );
         return;
     };
@@ -250,29 +247,36 @@ fn fits(spec: &Spec, design: &Design, cut: &Arc<Cut>, diagnostics: &mut Diagnost
     }
 }
 
-fn cannot_be_cut(error: &CutError, spec: &Spec) -> Diagnostic {
+fn cannot_be_cut(error: &CutError, spec: &Spec, extension: bool) -> Diagnostic {
     let place = place_of(&spec.design.profile);
     let shown = |turn_rad: &f64| {
         let unit = unit_or(spec.design.turn.as_ref(), "deg", Dimension::Angle);
         format_si(*turn_rad, &unit, 4)
     };
     match error {
-        CutError::Meets { turn_rad } => Diagnostic::error("E0607", place, "the rollers run into each other")
-            .label("for this torque and these springs")
-            .help(format!("they meet at a turn of {}; choose stiffer springs, a larger `start_radius` or a shorter turn", shown(turn_rad))),
+        CutError::Meets { turn_rad } => {
+            Diagnostic::error("E0607", place, "the rollers run into each other").label("for this torque and these springs").help(format!(
+                "they meet at a turn of {}; stay well below it, or choose stiffer springs or a larger `start_radius`",
+                shown(turn_rad)
+            ))
+        }
         CutError::Locks { turn_rad } => Diagnostic::error("E0602", place, "with the friction that is compensated the disc locks")
             .label("for this torque and these springs")
             .help(format!("it does from a turn of {} on; compensate less friction, or shorten the turn", shown(turn_rad))),
-        CutError::SpringsGiveNoForce { turn_rad } => Diagnostic::error(
-            "E0603",
-            place,
-            "these springs cannot do the work that is asked for",
-        )
-        .label("for this torque and these springs")
-        .help(format!(
-            "at a turn of {} they give no force: twice `start_radius` must be at least the rest length (at most, with compression springs)",
-            shown(turn_rad)
-        )),
+        CutError::SpringsGiveNoForce { turn_rad } => {
+            let help = if *turn_rad == 0.0 {
+                let side = if extension { "at least" } else { "at most" };
+                format!("the springs must be tense at the start: twice `start_radius` must be {side} their rest length")
+            } else {
+                format!(
+                    "they do not store the work of a turn of {}; choose springs whose force does not fall, or a shorter turn",
+                    shown(turn_rad)
+                )
+            };
+            Diagnostic::error("E0603", place, "these springs cannot do the work that is asked for")
+                .label("for this torque and these springs")
+                .help(help)
+        }
     }
 }
 

@@ -16,12 +16,11 @@ use crate::path::{Place, Vector, frame};
 const NOSE: f64 = 0.3;
 /// Radius of the seat, in roller radii: a little more than the roller needs.
 const SEAT: f64 = 1.05;
-/// Angle about the shaft over which the outline may go straight: a longer line would come near the shaft.
-const STRAIGHT_RAD: f64 = 80.0 * PI / 180.0;
+/// Angles about the shaft over which the outline may go straight, degrees, the first that fits: a longer line would come near the shaft, and
+/// a long one to a lobe that rises little would come into the seat from below.
+const STRAIGHT_DEG: [f64; 7] = [80.0, 60.0, 40.0, 20.0, 10.0, 5.0, 2.0];
 /// Places of a lobe, and of each piece between lobes, that are looked at.
 const LOOKS: u32 = 120;
-/// Turns tried for the largest one that fits.
-const HALVINGS: usize = 40;
 
 /// What lies between the end of a lobe and the start of the other.
 #[derive(Clone, Debug)]
@@ -67,6 +66,11 @@ fn wrapped(angle_rad: f64) -> f64 {
 
 /// What leads from a lobe that ends at λ to the other one; `None` where there is no room for it.
 pub(crate) fn closing(mechanism: &Mechanism, start_m: f64, end_m: f64) -> Option<Closing> {
+    STRAIGHT_DEG.iter().find_map(|degrees| joined(mechanism, [start_m, end_m], degrees * PI / 180.0))
+}
+
+/// The same with a straight piece over at most such an angle about the shaft.
+fn joined(mechanism: &Mechanism, [start_m, end_m]: [f64; 2], straight_rad: f64) -> Option<Closing> {
     let (r, e) = (mechanism.roller_m, mechanism.springs.sense());
     let [first, last] = [start_m, end_m].map(|l| mechanism.at(l));
     let sense = mechanism.cut.sense();
@@ -78,7 +82,7 @@ pub(crate) fn closing(mechanism: &Mechanism, start_m: f64, end_m: f64) -> Option
     let rest = along(first.at, seat - r, n0).map(|x| -x);
     let to_m = surface(mechanism, &first).map(|x| -x);
     let gap = wrapped(angle(middle) - angle(rest));
-    let about_shaft = (gap - STRAIGHT_RAD).max(0.0);
+    let about_shaft = (gap - straight_rad).max(0.0);
     let second = turned(middle, -about_shaft);
     // The line that leaves the nose and comes to the seat: their inner tangent.
     let apart = [rest[0] - second[0], rest[1] - second[1]];
@@ -153,17 +157,6 @@ impl Closing {
             points.iter().all(|p| maths::hypot(p[0] - x, p[1] - y) >= free && maths::hypot(p[0] + x, p[1] + y) >= free)
         })
     }
-}
-
-/// The largest turn after which the outline still finds back, rad.
-pub(crate) fn largest_turn_rad(mechanism: &Mechanism, start_m: f64) -> f64 {
-    let fits = |turn: f64| closing(mechanism, start_m, mechanism.cut.expected_m(turn)).is_some();
-    let (mut low, mut high) = (0.0, mechanism.cut.purpose().turn_rad);
-    for _ in 0..HALVINGS {
-        let middle = f64::midpoint(low, high);
-        (low, high) = if fits(middle) { (middle, high) } else { (low, middle) };
-    }
-    low
 }
 
 /// Smallest and largest distance of the outline from the shaft's middle, m.
