@@ -163,7 +163,7 @@ fn scan(
         let at = |s: f64| if free { free_station(mechanism, s, near) } else { station(mechanism, s, near) };
         let found = match at(s) {
             // Springs without tension on a path along which a brace carries nothing: 0/0, whose limit is the force just above.
-            Ok(station) if station.locked().is_some() => at(s + JUST_ABOVE * (to - from)),
+            Ok(station) if station.locked().is_some() => at(s + JUST_ABOVE * (to - from)).map(|above| Station { travel_m: s, ..above }),
             found => found,
         };
         let found = found.map_err(Stop::from).and_then(|station| match station.locked() {

@@ -97,7 +97,10 @@ fn scan(mechanism: &Mechanism, [from, to]: [f64; 2], intervals: usize, evaluatio
         let turn = from + (to - from) * i as f64 / intervals as f64;
         let found = match station(mechanism, turn) {
             // Springs without tension on a path that leaves straight outwards: 0/0, whose limit is the torque just above.
-            Ok(s) if s.locked().is_some() => station(mechanism, turn + JUST_ABOVE * (to - from)),
+            Ok(s) if s.locked().is_some() => {
+                let above = station(mechanism, turn + JUST_ABOVE * (to - from));
+                above.map(|above| Station { pose: Pose { turn_rad: turn, ..above.pose }, ..above })
+            }
             found => found,
         };
         let found = found.map_err(Stop::NotAssembled).and_then(|station| match station.locked() {
