@@ -205,9 +205,9 @@ def opened(browser, job):
 
 
 def wanted_figures(job):
-    """The figures that stand beside the report as files; every mechanism has at least its drawing and its force."""
+    """The figures that stand beside the report as files; every mechanism has at least its drawing and its force, or torque."""
     found = {path.stem for path in pathlib.Path(job["file"]).parent.glob("*.svg")}
-    return sorted(found | {"mechanism", "force"})
+    return sorted(found | {"mechanism", "torque" if "torque" in found else "force"})
 
 
 def look_at(browser, job):
