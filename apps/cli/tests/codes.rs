@@ -124,7 +124,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0609", "a cam that cannot be drawn: none is known"),
     ("E0610", "what motions need"),
     ("E0611", "what motions need"),
-    ("E0612", "what motions need"),
     ("E0616", "a study: tests of the family"),
     ("E0630", "what a synthesis needs"),
     ("E0631", "what a synthesis needs"),
@@ -137,6 +136,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0606", "a warning of the analysis"),
     ("W0608", "a warning of the analysis"),
     ("W0609", "a warning of the analysis"),
+    ("W0610", "a warning of searches: tests of the family"),
 ];
 
 /// Edits of the cam example and the code that each must bring.

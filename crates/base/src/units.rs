@@ -55,6 +55,14 @@ pub enum Dimension {
     Acceleration,
     /// Viscous damping: force per speed, N·s/m.
     Damping,
+    /// Mass per length, kg/m.
+    LineDensity,
+    /// Difference of temperatures, K.
+    TemperatureDifference,
+    /// Coefficient of thermal expansion, 1/K.
+    ThermalExpansion,
+    /// Frequency, Hz.
+    Frequency,
 }
 
 struct DimensionRow {
@@ -91,6 +99,10 @@ const DIMENSIONS: &[DimensionRow] = &[
     row(Dimension::AngularSpeed, "an angular speed", exponents(0, 0, -1, 0, 0, 1, 0), "rad/s", "3000 rpm", "rad/s, deg/s, rpm"),
     row(Dimension::Acceleration, "an acceleration", exponents(0, 1, -2, 0, 0, 0, 0), "m/s^2", "9.81 m/s^2", "m/s^2, mm/s^2"),
     row(Dimension::Damping, "a damping", exponents(1, 0, -1, 0, 0, 0, 0), "N*s/m", "20 N*s/m", "N*s/m, N*s/mm"),
+    row(Dimension::LineDensity, "a mass per length", exponents(1, -1, 0, 0, 0, 0, 0), "kg/m", "9 g/m", "g/m, kg/m"),
+    row(Dimension::TemperatureDifference, "a difference of temperatures", exponents(0, 0, 0, 0, 1, 0, 0), "K", "20 K", "K"),
+    row(Dimension::ThermalExpansion, "a thermal expansion", exponents(0, 0, 0, 0, -1, 0, 0), "1/K", "12e-6 1/K", "1/K"),
+    row(Dimension::Frequency, "a frequency", exponents(0, 0, -1, 0, 0, 0, 0), "Hz", "40 Hz", "Hz, kHz"),
 ];
 
 const fn row(
@@ -252,6 +264,8 @@ const ATOMS: &[Atom] = &[
     atom("kW", 1.0, 3, POWER),
     atom("A", 1.0, 0, exponents(0, 0, 0, 1, 0, 0, 0)),
     atom("mA", 1.0, -3, exponents(0, 0, 0, 1, 0, 0, 0)),
+    atom("Hz", 1.0, 0, exponents(0, 0, -1, 0, 0, 0, 0)),
+    atom("kHz", 1.0, 3, exponents(0, 0, -1, 0, 0, 0, 0)),
     atom("K", 1.0, 0, exponents(0, 0, 0, 0, 1, 0, 0)),
 ];
 

@@ -30,6 +30,43 @@ pub trait Metrics: Default + std::fmt::Debug {
     const ALL: &'static [MetricInfo];
 }
 
+/// Values of a family's metrics, in the order of its list, SI.
+#[derive(Debug)]
+pub struct Values<M> {
+    values: Vec<Option<f64>>,
+    family: std::marker::PhantomData<M>,
+}
+
+impl<M> Clone for Values<M> {
+    fn clone(&self) -> Self {
+        Self { values: self.values.clone(), family: std::marker::PhantomData }
+    }
+}
+
+impl<M: Metrics> Values<M> {
+    /// Nothing measured yet.
+    pub fn none() -> Self {
+        Self { values: vec![None; M::ALL.len()], family: std::marker::PhantomData }
+    }
+
+    /// A metric by name.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.value(M::ALL.iter().position(|m| m.name == name)?)
+    }
+
+    /// A metric by its index.
+    pub fn value(&self, index: usize) -> Option<f64> {
+        self.values.get(index).copied().flatten()
+    }
+
+    /// Notes a metric; one that is not a number is absent.
+    pub fn set(&mut self, name: &str, value: impl Into<Option<f64>>) {
+        if let Some(index) = M::ALL.iter().position(|m| m.name == name) {
+            self.values[index] = value.into().filter(|v| v.is_finite());
+        }
+    }
+}
+
 /// The metrics that have a value, as outputs see them: `value` and `display` take the index into the list.
 pub fn results<M: Metrics>(value: impl Fn(usize) -> Option<f64>, display: impl Fn(usize) -> Unit) -> Vec<Metric> {
     let one = |(index, info): (usize, &MetricInfo)| {

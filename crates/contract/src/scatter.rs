@@ -7,8 +7,8 @@ use crate::numbers::Number;
 use crate::read::deferred_quantities;
 use crate::studies::{Free, Scatter, Tolerance, chosen};
 
-/// Sections whose numbers scatter: what is made, and what it is made of.
-const ROOTS: [&str; 2] = ["design", "material"];
+/// Sections whose numbers scatter: what is made, what it is made of, and how far making misses it.
+const ROOTS: [&str; 3] = ["design", "material", "errors"];
 /// Most numbers that scatter at once: each takes two coordinates of a point.
 const MOST: usize = 128;
 

@@ -26,6 +26,7 @@ mod tolerance;
 
 pub use forcewright_base as base;
 pub use forcewright_cam as cam;
+pub use forcewright_capstan as capstan;
 pub use forcewright_compliant as compliant;
 pub use forcewright_contract as contract;
 pub use forcewright_curves as curves;
@@ -51,7 +52,11 @@ use forcewright_contract::reproduction::Reproduction;
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Every family. A new one costs its folder and a line here.
-pub static FAMILIES: &[&dyn Family] = &[&Entry::<forcewright_compliant::Compliant>::new(), &Entry::<forcewright_cam::Cam>::new()];
+pub static FAMILIES: &[&dyn Family] = &[
+    &Entry::<forcewright_compliant::Compliant>::new(),
+    &Entry::<forcewright_cam::Cam>::new(),
+    &Entry::<forcewright_capstan::Capstan>::new(),
+];
 
 /// A family by its name in project files.
 pub fn family(id: &str) -> Option<&'static dyn Family> {

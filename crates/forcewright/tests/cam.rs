@@ -52,6 +52,29 @@ fn a_search_centres_the_force() {
     assert!((value / spread - 1.0).abs() < 1e-3, "{value} {spread}");
 }
 
+/// The same of a torque cam; and the smallest disc that a search finds keeps what is required, its rollers at the edge of the undercut.
+#[test]
+fn searches_of_torque_cams() {
+    let study = |objective: &str, variables: &str| {
+        format!("\n[optimise]\nobjective = {{ minimise = \"{objective}\" }}\n[optimise.variables]\n{variables}\n")
+    };
+    let searched = |study: String, set: &[&str]| {
+        let loaded = load("torque-cam", &format!("{}{study}", text("torque-cam")), set);
+        let found = loaded.optimise(&DiskFiles, Path::new("found.toml"), (None, None), &|_| true).map_err(|e| e.render(false)).unwrap();
+        load("found", found.text.as_deref().expect("a better design"), &[])
+    };
+    let rate = "\"design.springs.rate\" = { range = [\"0.6 N/mm\", \"0.8 N/mm\"] }";
+    let centred = searched(study("torque_deviation", rate), &["design.springs.rate=\"0.71 N/mm\""]);
+    let (value, spread) = (metric(&centred, "torque_deviation"), metric(&centred, "torque_spread"));
+    assert!((value / spread - 1.0).abs() < 1e-3, "{value} {spread}");
+    let sizes = "\"design.disc.start_radius\" = { range = [\"28 mm\", \"60 mm\"] }\n\"design.roller_diameter\" = { range = [\"12 mm\", \"26 mm\"] }";
+    let before = load("torque-cam", text("torque-cam"), &[]);
+    let small = searched(study("disc_diameter", sizes), &[]);
+    assert!(metric(&small, "disc_diameter") < 0.99 * metric(&before, "disc_diameter"));
+    let report = small.solve("cam.toml", "", &mut |_| true);
+    assert!(report.outcome.checks.iter().filter(|c| c.required).all(|c| c.state == forcewright::model::CheckState::Met));
+}
+
 #[test]
 fn designs_from_requirements_meet_them_and_what_blocks_is_named() {
     let asked = |room: &str| {

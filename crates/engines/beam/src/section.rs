@@ -33,7 +33,7 @@ impl Section {
 
     /// Shear stiffness κ G A = 5/6 · E/(2(1+ν)) · w t, N; infinite without Poisson's ratio.
     ///
-    /// Factor 5/6 of the rectangle: Timoshenko & Goodier, "Theory of Elasticity", by equal shear energy.
+    /// Factor 5/6 of the rectangle: by equal shear energy (`timoshenko-goodier1970`).
     pub fn shear_stiffness_n(&self) -> f64 {
         match self.poisson {
             Some(nu) => 5.0 / 6.0 * self.axial_stiffness_n() / (2.0 * (1.0 + nu)),

@@ -147,8 +147,7 @@ fn rest(network: &Network, theory: Theory) -> f64 {
 
 #[test]
 fn small_loads_on_a_cantilever_give_timoshenko() {
-    // S. P. Timoshenko, "On the correction for shear of the differential equation for transverse vibrations", Phil. Mag. 41 (1921): bending
-    // 3 EI/L³ and shear kGA/L are springs in series. The shorter the beam, the more shear counts.
+    // `timoshenko1921`: bending 3 EI/L³ and shear kGA/L are springs in series. The shorter the beam, the more shear counts.
     for length in [0.1, 0.01, 3e-3, 1e-3] {
         let across =
             cantilever(length, 0.4, POM, Support::Free, Drive::Displacement { node: 1, direction: [-maths::sin(0.4), maths::cos(0.4)] });

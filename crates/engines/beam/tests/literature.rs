@@ -77,7 +77,7 @@ fn column(p: f64, turned: f64) -> (f64, f64, f64) {
 
 #[test]
 fn post_buckling_of_a_column() {
-    // S. P. Timoshenko & J. M. Gere, "Theory of Elastic Stability", section 2.7, prints three digits for a tip angle of 60°: 1.152 times
+    // `timoshenko-gere1961`, section 2.7, prints three digits for a tip angle of 60°: 1.152 times
     // the critical load, 0.741 along, 0.593 across. They follow from the integrals, so they check that the oracle is coded right:
     // (2 K(sin 30°)/π)² = 1.1517, 2 E/K − 1 = 0.7410, 2 sin 30°/K = 0.5932 with K = 1.685750, E = 1.467462.
     let critical = 0.25 * PI * PI;

@@ -77,8 +77,7 @@ impl Spline {
 
     /// The parts before and after a parameter between the first and the last knot; `None` if not valid, or not between them.
     ///
-    /// By knots inserted until the parameter is a threefold one (W. Boehm, "Inserting new knots into B-spline curves", Computer-Aided
-    /// Design 12(4), 1980): the curve stays.
+    /// By knots inserted until the parameter is a threefold one (`boehm1980`): the curve stays.
     pub fn split(&self, parameter: f64) -> Option<[Self; 2]> {
         let count = self.control_m.len();
         if !(self.is_valid() && self.knots[0] < parameter && parameter < self.knots[count]) {

@@ -35,6 +35,7 @@
 //! ```
 
 mod bundle;
+mod bundle_history;
 mod drive;
 mod field;
 mod history;
@@ -42,6 +43,7 @@ mod history;
 use std::fmt;
 
 pub use bundle::{Bundle, BundleState};
+pub use bundle_history::{BundleHistory, BundleStep};
 pub use drive::{Capacity, Drive, DriveSpec, Drum, Hold, PaperState, Shaft, State};
 use forcewright_base::maths::{exp, exp_m1, ln_1p};
 pub use history::{Cycle, History, Step};

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use forcewright_base::maths;
 use forcewright_base::quadrature::simpson_weight;
+use forcewright_contract::metrics::Values;
 use forcewright_elements::hertz::{LIFE_CYCLES, Life, Solid, line_contact, surface_life};
 
 use crate::cut::{Cut, CutError, SIDES};
 use crate::design::Design;
 use crate::mechanism::{Drive, Instant, Mechanism, NotAssembled, Pose, Sense, Stop};
-use crate::metrics::METRICS;
+use crate::metrics::CamMetrics;
 use crate::motion::{self, Moment, integral};
 use crate::path::{Corner, SidePath, curvature_per_m, frame};
 use crate::release::{End, Release, Released, release};
@@ -110,7 +111,7 @@ impl Behaviour {
         };
         let motion = design.motion.as_ref().and_then(run);
         let reference = design.motion.as_ref().and_then(|m| run(&m.lasting(m.reference_s?)));
-        let released = design.release.as_ref().map(|r| let_go(&mechanism, r, &stations, stroke_m));
+        let released = design.release.as_ref().map(|r| let_go(&mechanism, r, &stations, stroke_m, free));
         let motion = motion.or_else(|| released.as_ref().map(|r| r.moments.clone()).filter(|moments| !moments.is_empty()));
         let stopped = stopped.or(cut_short);
         Self { cut, corners, stations, window_m, window, stopped, motion, reference, release: released, evaluations, mechanism }
@@ -143,9 +144,12 @@ pub(crate) fn extent<S>(stations: &[S], value: impl Fn(&S) -> f64) -> [f64; 2] {
 
 /// Lets the slider go. Its stops are the ends of the stroke; the one at the start lies where the rollers come to it, and a little above: on
 /// a cam without undercut the mass seen by the slider grows without limit towards s = 0.
-fn let_go(mechanism: &Mechanism, asked: &Release, stations: &[Station], stroke_m: f64) -> Released {
+fn let_go(mechanism: &Mechanism, asked: &Release, stations: &[Station], stroke_m: f64, free: bool) -> Released {
     let near = stations.first().map_or(0.0, |s| s.travel_m).max(JUST_ABOVE * stroke_m);
-    release(mechanism, &Release { start_m: asked.start_m.max(near), stops_m: [near, stroke_m], ..*asked })
+    let start_m = asked.start_m.max(near);
+    // A free slider is let go where nothing pushes it sideways.
+    let sideways_m = free.then(|| free_station(mechanism, start_m, None).map_or(0.0, |station| station.sideways_m[0]));
+    release(mechanism, &Release { start_m, stops_m: [near, stroke_m], sideways_m, ..*asked })
 }
 
 /// Forces at even travels; stops where a brace no longer reaches its path or friction locks the rollers. A scan from the very start begins where the slider comes to rest.
@@ -225,35 +229,8 @@ fn free_station(mechanism: &Mechanism, travel_m: f64, near: Option<&Station>) ->
     Ok(Station { travel_m, pose: Pose { evaluations, ..pose }, still, up, down, sideways_m: [x0, x1, x2] })
 }
 
-/// Metrics by the index of [`METRICS`].
-#[derive(Clone, Debug, Default)]
-pub struct Measured {
-    values: Vec<Option<f64>>,
-}
-
-impl Measured {
-    /// A metric by name.
-    pub fn get(&self, name: &str) -> Option<f64> {
-        self.value(METRICS.iter().position(|m| m.name == name)?)
-    }
-
-    /// A metric by its index.
-    pub fn value(&self, index: usize) -> Option<f64> {
-        self.values.get(index).copied().flatten()
-    }
-
-    /// Nothing measured yet.
-    pub(crate) fn none() -> Self {
-        Self { values: vec![None; METRICS.len()] }
-    }
-
-    /// Notes a metric; one that is not a number is absent.
-    pub(crate) fn set(&mut self, name: &str, value: impl Into<Option<f64>>) {
-        if let Some(index) = METRICS.iter().position(|m| m.name == name) {
-            self.values[index] = value.into().filter(|v| v.is_finite());
-        }
-    }
-}
+/// Values of this family's metrics.
+pub type Measured = Values<CamMetrics>;
 
 /// Every metric that the behaviour has.
 pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
@@ -265,13 +242,19 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
         return m;
     }
     forces(design, behaviour, &mut m);
-    extents(behaviour, &mut m);
-    contact(behaviour, &mut m);
-    pressure(design, behaviour, &mut m);
-    profile(behaviour, &mut m);
-    moving(behaviour, &mut m);
-    work(behaviour, &mut m);
+    whole(design, behaviour, &mut m);
     m
+}
+
+/// What the whole stroke and the motion say.
+fn whole(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
+    extents(behaviour, m);
+    energy(behaviour, m);
+    contact(behaviour, m);
+    pressure(design, behaviour, m);
+    profile(behaviour, m);
+    moving(behaviour, m);
+    work(behaviour, m);
 }
 
 /// Pressure between rollers and cam over the window.
@@ -351,9 +334,7 @@ pub(crate) fn measure_scalars(design: &Design, behaviour: &Behaviour) -> Measure
     let mut m = Measured::none();
     geometry(design, behaviour, &mut m);
     mass(design, &mut m);
-    extents(behaviour, &mut m);
-    contact(behaviour, &mut m);
-    moving(behaviour, &mut m);
+    whole(design, behaviour, &mut m);
     m
 }
 
@@ -419,15 +400,23 @@ fn forces(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
         };
         m.set("force_deviation", Behaviour::extent(window, off)[1]);
     }
+}
+
+/// Work over the stroke, and what of the force is weight.
+fn energy(behaviour: &Behaviour, m: &mut Measured) {
     let s = &behaviour.stations;
     let work: f64 = s.windows(2).map(|p| 0.5 * (p[1].travel_m - p[0].travel_m) * (p[0].still.force_n + p[1].still.force_n)).sum();
     m.set("energy", work);
+    if behaviour.mechanism.gravity_m_per_s2 == 0.0 {
+        m.set("weight", 0.0);
+        return;
+    }
     let weightless = Mechanism { gravity_m_per_s2: 0.0, ..behaviour.mechanism.clone() };
-    let [without, _] = behaviour.moments(|s| {
+    let [weight, _] = behaviour.moments(|s| {
         let drive = Drive { at: [s.travel_m, s.sideways_m[0]], ..Drive::default() };
-        weightless.forces(&s.pose, &drive, Sense::Frictionless).force_n
+        s.still.force_n - weightless.forces(&s.pose, &drive, Sense::Frictionless).force_n
     });
-    m.set("weight", mean - without);
+    m.set("weight", weight);
 }
 
 fn contact(behaviour: &Behaviour, m: &mut Measured) {

@@ -11,11 +11,16 @@ use crate::cut::Cut;
 use crate::design::{Design, Requirements};
 use crate::mechanism::Stop;
 use crate::path::curvature_per_m;
-use crate::rules::{NO_VALUE, Rules, percent};
+use crate::rules::{Rules, percent};
 
 /// Requirements in the order of the language, then the family's own rules.
 pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Check> {
-    let context = Context { design, behaviour, measured, rules: Rules::of(design, measured, unreached(design, behaviour)) };
+    let context = Context {
+        design,
+        behaviour,
+        measured,
+        rules: Rules::of(design, measured, unreached(design, behaviour), behaviour.motion.is_some()),
+    };
     let mut all = Vec::new();
     if let Some(requirements) = &design.requirements {
         all.extend(context.force(requirements));
@@ -39,16 +44,12 @@ struct Context<'a> {
     rules: Rules<'a>,
 }
 
-/// Why a value is missing.
-fn unreached(design: &Design, behaviour: &Behaviour) -> String {
-    match behaviour.stopped {
-        Some((s, why)) => {
-            let travel = format_si(s, &design.units.travel, 4);
-            let what = if matches!(why, Stop::Locks(_)) { "friction locks the mechanism" } else { "the mechanism cannot be assembled" };
-            format!("{what} at a travel of {travel}; see the status")
-        }
-        None => NO_VALUE.to_owned(),
-    }
+/// Why values are missing, where the analysis did not come to its end.
+fn unreached(design: &Design, behaviour: &Behaviour) -> Option<String> {
+    let (s, why) = behaviour.stopped?;
+    let travel = format_si(s, &design.units.travel, 4);
+    let what = if matches!(why, Stop::Locks(_)) { "friction locks the mechanism" } else { "the mechanism cannot be assembled" };
+    Some(format!("{what} at a travel of {travel}; see the status"))
 }
 
 impl Context<'_> {
@@ -96,7 +97,15 @@ impl Context<'_> {
             sense: Sense::AtLeast,
             display: self.design.units.travel.clone(),
             basis: "travel for which the cam is cut and the mechanism can be assembled and moved".to_owned(),
-            fix: "raise `design.stroke`; spring length, cam length and pressure angle grow with it".to_owned(),
+            fix: match self.behaviour.stopped {
+                None if start > 0.0 && self.behaviour.mechanism.pose([0.0, 0.0]).is_ok() => format!(
+                    "friction locks the first {}: less of it, springs stretched more at the start, or a larger `design.stroke`",
+                    self.travel(start)
+                ),
+                None => "raise `design.stroke`; spring length, cam length and pressure angle grow with it".to_owned(),
+                Some((_, Stop::Locks(_))) => "friction locks the rollers on the way: less of it, or longer braces".to_owned(),
+                Some((_, Stop::NotAssembled(_))) => "the mechanism comes apart on the way; the status says what to do".to_owned(),
+            },
             ..base
         };
         Some(comparison.judge())

@@ -336,8 +336,14 @@ fn random_of(spec: &Spec) -> Option<RandomProfile> {
     Some(RandomProfile {
         deviation_m: si(&random.deviation)?,
         correlation_m: si(&random.correlation_length)?,
-        seed: random.seed.as_ref().map_or(1, |s| u64::from(s.value)),
+        seed: whole(si(&random.seed).unwrap_or(1.0)),
     })
+}
+
+/// A seed that was typed or drawn.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, from 0 to 1e9")]
+pub(crate) fn whole(seed: f64) -> u64 {
+    seed.round().clamp(0.0, 1e9) as u64
 }
 
 /// Both keys say the same thing.

@@ -135,11 +135,6 @@ pub(crate) const CODES: &[Explanation] = &[
         "The acceleration of a released slider is force over mass. Give masses in `[design.bodies]`, or hang a mass on it.",
     ),
     code(
-        "E0612",
-        "a free slider is not let go",
-        "The motion after a release is computed with one freedom, along the guide. A slider without a guide can be moved along its travel by a law of time; then its way sideways is computed.",
-    ),
-    code(
         "E0613",
         "a key of the other kind of cam",
         "There are two kinds of cam. With a table `[design.disc]` it is a torque cam: a disc on a shaft with `turn`, `for_torque`, `requirements.torque`. Without it, rollers on straight cams move a slider: `brace_length`, `stroke`, `for_force`, `requirements.force`. A key of the other kind would have no effect, and is refused. Torque cams have no release, no errors of making and no weight.",
@@ -156,8 +151,8 @@ pub(crate) const CODES: &[Explanation] = &[
     ),
     code(
         "E0616",
-        "a study that does not know torque cams",
-        "`optimise` and `synthesise` compute cams with a slider only. `solve` analyses a torque cam, `export` writes its parts, `tolerance` computes its scatter, and `sweep` analyses any number of them over any keys.",
+        "a synthesis that does not know torque cams",
+        "`synthesise` composes cams with a slider only. Begin with a torque cam that can be cut: `solve` analyses it, `optimise` searches for a better one with `start_radius`, rollers and springs as variables, `tolerance` computes its scatter, and `sweep` analyses any number of them over any keys.",
     ),
     code(
         "E0630",
@@ -208,6 +203,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0609",
         "friction locks the start of the travel",
         "Where the path stands nearly across the pull of a brace (or the guide of a disc's roller), rolling resistance turns the force of the cam round: no force, or torque, moves the mechanism from there. At the start of a cam whose springs are not stretched this is so over a short way, μ²A/2 for a constant force; preload, larger rollers or less friction make it shorter. The curves begin where the mechanism moves. Where it locks later, the analysis ends there and says so.",
+    ),
+    code(
+        "W0610",
+        "a limit that a search does not see",
+        "`[requirements.limits]` names a metric that the design has no value of, such as one of a motion without `[motion]`, or a pressure without materials. A search cannot keep to it, and goes on without it; the design that is found is checked against all requirements. `solve` says why the value is missing.",
     ),
     code(
         "W0604",

@@ -125,7 +125,10 @@ impl Family for Cam {
     }
 
     fn task(spec: &Spec, design: &Kind, free: &[Free], purpose: StudyPurpose, diagnostics: &mut Diagnostics) -> Option<Task> {
-        study::task(spec, torque::no_disc(spec, design, diagnostics)?, free, purpose, diagnostics)
+        match design {
+            Kind::Slider(design) => study::task(spec, design, free, purpose, diagnostics),
+            Kind::Disc(design) => torque::study::task(spec, design, free, purpose, diagnostics),
+        }
     }
 
     fn skeleton() -> Option<Skeleton> {

@@ -5,7 +5,7 @@ use forcewright_contract::metrics::{MetricInfo, Metrics, metric};
 
 /// The metrics of this family.
 #[derive(Debug, Default)]
-pub(crate) struct CamMetrics;
+pub struct CamMetrics;
 
 impl Metrics for CamMetrics {
     const ALL: &'static [MetricInfo] = METRICS;

@@ -15,7 +15,7 @@ use crate::analysis::Behaviour;
 use crate::cut::SIDES;
 use crate::design::Design;
 use crate::path::{SidePath, Vector, frame};
-use crate::springs::{Bank, SpringLaw};
+use crate::springs::{Bank, Spring, SpringLaw};
 
 /// How the parts are made, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -292,40 +292,54 @@ fn inspection(design: &Design, behaviour: &Behaviour) -> Sheet {
 
 /// The springs to order, and what a turn of the adjusting screw does.
 fn order(design: &Design, behaviour: &Behaviour) -> Sheet {
-    let number = |value: f64| format_number(value, 5);
     let stations = &behaviour.stations;
-    let [shortest, longest] = Behaviour::extent(stations, |s| s.still.spring_m);
-    let pitch_m = design.adjust_pitch_m.unwrap_or(0.0);
-    let middle = stations.get(stations.len() / 2);
-    let rows = design
-        .built
-        .springs
-        .iter()
-        .enumerate()
-        .map(|(i, spring)| {
-            let one = Bank::new(vec![spring.clone()], design.built.extension);
-            let force = |length: f64| one.tension_n(length)[0].abs();
-            // F = P dL/ds: a turn changes P by the rate times the pitch.
-            let turn = middle.map_or(0.0, |s| {
-                let [total, _] = Bank::new(design.built.springs.clone(), design.built.extension).tension_n(s.still.spring_m);
-                s.still.force_n * one.tension_n(s.still.spring_m)[1] * pitch_m / total.abs()
-            });
-            let (rate, rest) = match &spring.law {
-                SpringLaw::Linear { rate_n_per_m, rest_m } => (number(1e-3 * rate_n_per_m), number(1e3 * rest_m)),
-                SpringLaw::Table(_) => ("by its curve".to_owned(), "by its curve".to_owned()),
-            };
-            vec![
-                (i + 1).to_string(),
-                rate,
-                rest,
-                number(1e3 * shortest),
-                number(1e3 * longest),
-                number(force(shortest)),
-                number(force(longest)),
-                if pitch_m > 0.0 { number(turn) } else { "–".to_owned() },
-            ]
-        })
-        .collect();
+    springs_to_order(&Order {
+        springs: &design.built.springs,
+        extension: design.built.extension,
+        lengths_m: Behaviour::extent(stations, |s| s.still.spring_m),
+        pitch_m: design.adjust_pitch_m,
+        middle: stations.get(stations.len() / 2).map(|s| [s.still.spring_m, s.still.force_n]),
+        per_turn: "force of the mechanism per turn in mid-stroke / N",
+        gives: "force",
+    })
+}
+
+/// What a sheet of springs follows from.
+pub(crate) struct Order<'a> {
+    pub springs: &'a [Spring],
+    pub extension: bool,
+    /// Shortest and longest, m.
+    pub lengths_m: [f64; 2],
+    /// Of the adjusting screw, m.
+    pub pitch_m: Option<f64>,
+    /// Length of the springs in the middle of the way, m, and the force or torque of the mechanism there.
+    pub middle: Option<[f64; 2]>,
+    /// Heading of what a turn adds.
+    pub per_turn: &'static str,
+    /// What the mechanism gives.
+    pub gives: &'static str,
+}
+
+/// Springs with the lengths and forces that they need, and what a turn of the adjusting screw of each does.
+pub(crate) fn springs_to_order(order: &Order<'_>) -> Sheet {
+    let number = |value: f64| format_number(value, 5);
+    let [shortest, longest] = order.lengths_m;
+    let one = |(i, spring): (usize, &Spring)| {
+        let bank = Bank::new(vec![spring.clone()], order.extension);
+        let force = |length: f64| bank.tension_n(length)[0].abs();
+        // F = P dL/ds: a turn changes P by the rate times the pitch.
+        let turn = order.pitch_m.zip(order.middle).map(|(pitch_m, [length, level])| {
+            let [total, _] = Bank::new(order.springs.to_vec(), order.extension).tension_n(length);
+            level * bank.tension_n(length)[1] * pitch_m / total.abs()
+        });
+        let (rate, rest) = match &spring.law {
+            SpringLaw::Linear { rate_n_per_m, rest_m } => (number(1e-3 * rate_n_per_m), number(1e3 * rest_m)),
+            SpringLaw::Table(_) => ("by its curve".to_owned(), "by its curve".to_owned()),
+        };
+        let lengths = [number(1e3 * shortest), number(1e3 * longest), number(force(shortest)), number(force(longest))];
+        let turn = turn.map_or_else(|| "–".to_owned(), number);
+        [(i + 1).to_string(), rate, rest].into_iter().chain(lengths).chain([turn]).collect()
+    };
     let columns = [
         "spring",
         "rate / N/mm",
@@ -334,13 +348,16 @@ fn order(design: &Design, behaviour: &Behaviour) -> Sheet {
         "longest / mm",
         "force there / N",
         "largest force / N",
-        "force of the mechanism per turn in mid-stroke / N",
+        order.per_turn,
     ];
     Sheet {
         name: "springs".to_owned(),
-        caption: "Springs to order, lengths between the axles; and what one turn of the adjusting screw of a spring adds to the force of the mechanism.".to_owned(),
+        caption: format!(
+            "Springs to order, lengths between the axles; and what one turn of the adjusting screw of a spring adds to the {} of the mechanism.",
+            order.gives
+        ),
         columns: columns.map(str::to_owned).to_vec(),
-        rows,
+        rows: order.springs.iter().enumerate().map(one).collect(),
     }
 }
 

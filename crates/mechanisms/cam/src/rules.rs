@@ -9,9 +9,6 @@ use crate::analysis::Measured;
 use crate::design::{Design, DisplayUnits, Material, Requirements};
 use crate::metrics::METRICS;
 
-/// Of a metric that a complete analysis does not have.
-pub(crate) const NO_VALUE: &str = "the design has no such value; see the meaning of the metric";
-
 /// The unit in which people are shown a metric.
 pub(crate) fn display_unit(requirements: Option<&Requirements>, units: &DisplayUnits, index: usize) -> Unit {
     use Dimension as D;
@@ -38,13 +35,20 @@ pub(crate) fn percent() -> Unit {
     Unit::parse("%").unwrap_or_else(|_| Unit::si(Dimension::Ratio))
 }
 
+/// Whether a metric is about a motion.
+fn needs_motion(name: &str) -> bool {
+    name.contains("motion") || name.starts_with("peak") || ["speed_max", "turn_speed_max", "work_in", "energy_lost"].contains(&name)
+}
+
 /// What the rules look at.
 pub(crate) struct Rules<'a> {
     pub requirements: Option<&'a Requirements>,
     pub units: &'a DisplayUnits,
     pub measured: &'a Measured,
-    /// Why a value is missing that nothing else explains.
-    pub missing: String,
+    /// Why values are missing, where the analysis did not come to its end.
+    pub unreached: Option<String>,
+    /// Whether a motion is asked for, and whether it came to its end.
+    pub moves: [bool; 2],
     /// Arm of the rolling resistance, m.
     pub arm_m: f64,
     /// Lengths at which the springs are solid and over-extended, m.
@@ -57,12 +61,13 @@ pub(crate) struct Rules<'a> {
 
 impl<'a> Rules<'a> {
     /// Of a cam with a slider.
-    pub(crate) fn of(design: &'a Design, measured: &'a Measured, missing: String) -> Self {
+    pub(crate) fn of(design: &'a Design, measured: &'a Measured, unreached: Option<String>, moved: bool) -> Self {
         Self {
             requirements: design.requirements.as_ref(),
             units: &design.units,
             measured,
-            missing,
+            unreached,
+            moves: [design.moves(), moved],
             arm_m: design.built.arm_m,
             lengths_m: [design.built.min_length_m, design.built.max_length_m],
             friction: design.friction,
@@ -85,7 +90,7 @@ impl<'a> Rules<'a> {
             scale: None,
             basis: METRICS[index].doc.to_owned(),
             fix: String::new(),
-            missing: self.missing.clone(),
+            missing: self.why_missing(metric),
             partial: false,
             broken: false,
         }
@@ -118,22 +123,35 @@ impl<'a> Rules<'a> {
             for (bound, sense, suffix) in [(limit.min, Sense::AtLeast, "at least"), (limit.max, Sense::AtMost, "at most")] {
                 let Some(bound) = bound else { continue };
                 let base = self.base("CAM012", info.name, &format!("{} ({suffix})", info.name), info.name);
-                let missing = match info.name {
-                    "contact_life" => "give `brinell` of both materials, steels of 100 to 400, and what the pressure needs".to_owned(),
-                    "profile_error_rms" | "profile_error_max" => "the profile has no errors; give `errors.measured_profile`".to_owned(),
-                    "hertz_pressure_max" => "give `material.cam`, `material.roller` and `design.cam_thickness`".to_owned(),
-                    "force_deviation" => "no force is required; give `requirements.force`".to_owned(),
-                    "torque_deviation" => "no torque is required; give `requirements.torque`".to_owned(),
-                    "time_to_end" | "speed_end" => "the slider is not let go, or does not come to a stop in time".to_owned(),
-                    "slack_time" => "no mass hangs on the slider; give `motion.hanging_mass`".to_owned(),
-                    name if name.contains("motion") || name.starts_with("peak") => "there is no motion; give `[motion]`".to_owned(),
-                    _ => self.missing.clone(),
-                };
                 let fix = "change the design, or the limit".to_owned();
-                all.push(Comparison { limit: Some(bound), sense, missing, fix, ..base }.judge());
+                all.push(Comparison { limit: Some(bound), sense, fix, ..base }.judge());
             }
         }
         all
+    }
+
+    /// Why a metric has no value.
+    fn why_missing(&self, name: &str) -> String {
+        if let Some(unreached) = &self.unreached {
+            return unreached.clone();
+        }
+        let why = match name {
+            _ if needs_motion(name) && !self.moves[0] => "there is no motion; give `[motion]`",
+            _ if needs_motion(name) && !self.moves[1] => "the motion does not come to its end; see the status",
+            "contact_life" => "give `brinell` of both materials, steels of 100 to 400, and what the pressure needs",
+            "profile_error_rms" | "profile_error_max" => "the profile has no errors; give `errors.measured_profile`",
+            "hertz_pressure_max" => "give `material.cam`, `material.roller` and `design.cam_thickness`",
+            "force_deviation" => "no force is required; give `requirements.force`",
+            "torque_deviation" => "no torque is required; give `requirements.torque`",
+            "time_to_end" | "speed_end" => "the slider is not let go, or does not come to a stop in time",
+            "slack_time" => "no mass hangs on the slider; give `motion.hanging_mass`",
+            "peak_force_ratio_to" => "there is no slower motion to compare with; give `motion.reference_duration`",
+            "peak_force_ratio" | "peak_torque_ratio" => {
+                "what is needed at rest comes to zero on the way, so that nothing is in proportion to it"
+            }
+            _ => "the design has no such value; see the meaning of the metric",
+        };
+        why.to_owned()
     }
 
     /// CAM005: springs within their lengths.

@@ -133,6 +133,7 @@ pub(crate) struct Profile {
     pub for_rest_length: Slot<Quantity>,
     pub for_start_length: Slot<Quantity>,
     pub for_friction: Slot<Quantity>,
+    pub for_guide_friction: Slot<Quantity>,
     pub compensate: Slot<&'static str>,
     pub share_right: Slot<Quantity>,
 }
@@ -210,7 +211,7 @@ pub(crate) struct MeasuredProfile {
 pub(crate) struct RandomProfile {
     pub deviation: Slot<Quantity>,
     pub correlation_length: Slot<Quantity>,
-    pub seed: Slot<u32>,
+    pub seed: Slot<Quantity>,
 }
 
 /// What happens to it.
@@ -471,6 +472,8 @@ impl Describe for Profile {
             &Param::new("for_friction", "Rolling friction μ that is compensated.").within(0.0, 0.2).default("0"),
             &mut self.for_friction,
         );
+        let guide = Param::new("for_guide_friction", "Torque cam: friction of the guides that is compensated.");
+        v.quantity(&guide.within(0.0, 0.5).default("0"), &mut self.for_guide_friction);
         v.choice(
             &Param::new("compensate", "In which direction the force or torque is exact.").default("up"),
             COMPENSATIONS,
@@ -585,7 +588,8 @@ impl Describe for RandomProfile {
         v.quantity(&deviation.required(), &mut self.deviation);
         let correlation = length("correlation_length", "Length along the profile over which deviations keep together.");
         v.quantity(&correlation.within(1e-4, 1.0).required(), &mut self.correlation_length);
-        v.count(&Param::new("seed", "Which draw.").within(0.0, 1e9).default("1"), &mut self.seed);
+        let seed = "Which draw, rounded to a whole number; 1 without it. Where it scatters, a tolerance study draws a profile for every design: `seed = \"5000 ± 4999\"`.";
+        v.quantity(&Param::new("seed", seed).within(0.0, 1e9), &mut self.seed);
     }
 }
 

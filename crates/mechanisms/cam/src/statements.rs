@@ -125,7 +125,7 @@ pub(crate) fn limits(design: &Design) -> Vec<Statement> {
     if design.release.is_some() {
         all.push(statement(
             "Release",
-            "One freedom, on the guide. Stops are rigid and end the motion; the cable has no mass and does not stretch, the pulley no inertia; where the cable becomes taut, slider and mass take one speed at once.",
+            "A free slider is let go where nothing pushes it sideways; rolling resistance is taken against the way along the travel. Stops are rigid and end the motion; the cable has no mass and does not stretch, the pulley no inertia; where the cable becomes taut, slider and mass take one speed at once.",
         ));
     }
     if design.moves() {

@@ -3,7 +3,7 @@
 pub(crate) mod knobs;
 pub(crate) mod many;
 mod sensitivity;
-mod task;
+pub(crate) mod task;
 
 use forcewright_base::diagnostics::Diagnostics;
 use forcewright_contract::studies::{Free, Purpose};
@@ -26,5 +26,8 @@ pub(crate) fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics
 /// The search that `[optimise]` asks for.
 pub(crate) fn task(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
     let knobs = Knobs::new(spec, free, purpose, diagnostics)?;
-    task::task(design, knobs, &spec.studies.optimise.objective, diagnostics)
+    let many = Many::new(design, knobs);
+    let wanted = many.wanted_n();
+    let asked = (&task::FORCE, wanted.as_slice());
+    task::task(Box::new(many), asked, design.requirements.as_ref(), &spec.studies.optimise.objective, diagnostics)
 }

@@ -65,16 +65,16 @@ pub(crate) fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
     Analysis { outcome, figures, model, limits }
 }
 
-/// The design of a cam with a slider. E0616: searches do not know torque cams.
+/// The design of a cam with a slider. E0616: synthesis does not know torque cams.
 pub(crate) fn no_disc<'a>(spec: &Spec, design: &'a Kind, diagnostics: &mut Diagnostics) -> Option<&'a crate::Design> {
     match design {
         Kind::Slider(design) => Some(design),
         Kind::Disc(_) => {
             let place = spec.design.disc.present.as_ref().map(|p| p.span).unwrap_or_default();
             diagnostics.push(
-                Diagnostic::error("E0616", place, "optimise and synthesise do not know torque cams")
+                Diagnostic::error("E0616", place, "synthesise does not know torque cams")
                     .label("a torque cam")
-                    .help("`solve` and `tolerance` analyse one, and `sweep` any number of them"),
+                    .help("`optimise` searches for a better one from a first design, and `sweep` analyses any number of them"),
             );
             None
         }

@@ -108,7 +108,16 @@ fn a_cycle_loses_the_loop() {
 }
 
 fn asked(start_m: f64, duration_s: f64) -> Release {
-    Release { pull_n: 0.0, weight_kg: 0.0, weight_m_per_s2: 9.81, damping_n_s_per_m: 0.0, start_m, duration_s, stops_m: [1e-6, 0.24] }
+    Release {
+        pull_n: 0.0,
+        weight_kg: 0.0,
+        weight_m_per_s2: 9.81,
+        damping_n_s_per_m: 0.0,
+        sideways_m: None,
+        start_m,
+        duration_s,
+        stops_m: [1e-6, 0.24],
+    }
 }
 
 /// Kinetic energy by the mass that the slider feels without friction, J.
@@ -272,4 +281,41 @@ fn a_repetition_gives_what_friction_takes() {
     };
     let sum = |value: &dyn Fn(&Moment) -> f64| up.iter().enumerate().map(|(i, m)| weight(i) * value(m)).sum::<f64>() * h / 3.0;
     close(sum(&|i| i.moving.force_n * i.speed_m_per_s - i.lost_w), stored_j(&m, 0.08) - stored_j(&m, 0.01), 1e-8, "up");
+}
+
+/// A weight on a free slider whose cam stands askew: energy is accounted for along the travel and sideways, with friction, damping, and
+/// where the cable becomes taut.
+#[test]
+fn a_free_slider_loses_what_is_accounted_for() {
+    let upright =
+        mechanism(ForceLaw::through(&[[0.0, 30.0], [0.02, 30.0], [0.2, 160.0], [0.24, 160.0]]).expect("a law"), BODIES, 0.09, 0.003, 0.003);
+    let tilt = |side: usize| Flaws { turn_rad: if side == 0 { 0.004 } else { -0.004 }, ..Flaws::default() };
+    let m = Mechanism { paths: [0, 1].map(|side| upright.paths[side].with(&tilt(side))), gravity_m_per_s2: 0.0, ..upright };
+    let force = |drive: Drive| m.instant(&drive, Sense::Frictionless).expect("assembles");
+    let stored = |s: f64, x: f64| {
+        let pose = m.pose([s, x]).expect("assembles");
+        m.springs.energy_j(2.0 * X0, m.forces(&pose, &Drive { at: [s, x], ..Drive::default() }, Sense::Frictionless).spring_m)
+    };
+    let mut caught = 0.0_f64;
+    for (pull_n, weight_kg, damping_n_s_per_m, duration_s) in [(0.0, 6.5, 0.0, 0.2), (0.0, 6.5, 4.0, 0.2), (90.0, 2.0, 0.0, 1.0)] {
+        let asked = Release { weight_kg, pull_n, damping_n_s_per_m, sideways_m: Some(0.0), ..asked(0.005, duration_s) };
+        let run = release(&m, &asked);
+        let last = run.moments.last().expect("moments");
+        assert!(run.moments.iter().any(|i| i.sideways_m.abs() > 1e-4), "it goes sideways");
+        let at = [last.travel_m, run.sideways[0]];
+        let by = |a: [f64; 2]| force(Drive { at, acceleration: a, ..Drive::default() });
+        let [still, along, across] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(by);
+        let [m11, m12] = [along, across].map(|i| i.force_n - still.force_n);
+        let [m21, m22] = [along, across].map(|i| i.guide_n - still.guide_n);
+        assert!((m12 - m21).abs() < 1e-9 * m11, "a mass is symmetric: {m12} {m21}");
+        let (v, u) = (last.speed_m_per_s, run.sideways[1]);
+        let kinetic = 0.5 * (m11 * v * v + 2.0 * m12 * v * u + m22 * u * u) + 0.5 * weight_kg * run.weight[1] * run.weight[1];
+        let put_in = pull_n * (last.travel_m - asked.start_m) + weight_kg * 9.81 * (run.weight[0] - asked.start_m);
+        let lost = run.friction_j + run.damping_j + run.catches_j;
+        let missing = put_in - kinetic - lost - (stored(at[0], at[1]) - stored(asked.start_m, 0.0));
+        assert!(missing.abs() < 1e-8 * put_in.abs(), "{missing} J of {put_in} J, {:?}", run.end);
+        assert!(run.friction_j > 0.0 && (run.damping_j > 0.0) == (damping_n_s_per_m > 0.0));
+        caught = caught.max(run.catches_j);
+    }
+    assert!(caught > 1e-3, "the cable became taut");
 }

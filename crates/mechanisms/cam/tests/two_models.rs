@@ -325,10 +325,15 @@ fn the_paper_s_procedure_converges_with_fourth_order() {
     }
 }
 
-/// Let go at rest without friction, both models fall back alike.
+/// Let go at rest without friction, both models fall back alike, on a guide and without one.
 #[test]
 fn both_models_fall_back_alike() {
-    let design = Design { turn: [0.01, 0.0], ..Design::default() };
+    for free in [false, true] {
+        falls_back(&Design { turn: [0.01, 0.0], free, ..Design::default() });
+    }
+}
+
+fn falls_back(design: &Design) {
     let family = design.family();
     let general = design.general(0.1, None, None);
     let run = general.system.simulate(general.system.guess(), &[], &Settings::until(0.05).accuracy(1e-12));
@@ -339,6 +344,7 @@ fn both_models_fall_back_alike() {
         weight_kg: 0.0,
         weight_m_per_s2: 9.81,
         damping_n_s_per_m: 0.0,
+        sideways_m: design.free.then_some(0.0),
         start_m: 0.1,
         duration_s: 0.05,
         stops_m: [1e-4, STROKE],
@@ -348,6 +354,8 @@ fn both_models_fall_back_alike() {
     let moment = ours.moments.last().expect("moments");
     assert!((moment.travel_m + family.rise_m - last.q[1]).abs() < 1e-10, "{} {}", moment.travel_m, last.q[1] - family.rise_m);
     assert!((moment.speed_m_per_s - last.velocity[1]).abs() < 1e-8, "{} {}", moment.speed_m_per_s, last.velocity[1]);
+    assert!((moment.sideways_m - last.q[0]).abs() < 1e-10, "{} {}", moment.sideways_m, last.q[0]);
+    assert_eq!(moment.sideways_m.abs() > 1e-4, design.free, "it goes sideways: {}", moment.sideways_m);
 }
 
 /// A slider that is driven along its travel and free to move sideways, on a tilted cam: the general engine integrates its motion too.

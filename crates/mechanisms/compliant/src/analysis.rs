@@ -457,7 +457,7 @@ pub(crate) fn curvature_ratio(beam: &Beam, u: f64) -> f64 {
 }
 
 /// The stress at the inner face of a curved bar of rectangular section over that of a straight one, to first order in thickness over
-/// radius (Winkler; Timoshenko, Strength of Materials, Part II).
+/// radius (Winkler's theory in `timoshenko1956`).
 pub(crate) fn inner_face_factor(beam: &Beam, u: f64) -> f64 {
     1.0 + curvature_ratio(beam, u) / 3.0
 }

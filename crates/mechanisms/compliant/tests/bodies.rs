@@ -118,8 +118,8 @@ fn a_block_that_turns_bends_as_the_closed_form_says() {
     near(turned.behaviour.path.points[0].nodes[turned.design.load_node].rotation_rad, 1e-4 / (ktt - kyt * kyt / kyy), 1e-6, "rotation");
 }
 
-/// The example: beams under a lengthwise load P sway with K = P/(L·(tan(kL/2)/(kL/2) − 1)) each, k² = P/EI (S. P. Timoshenko, J. M. Gere,
-/// Theory of Elastic Stability, section 1.11).
+/// The example: beams under a lengthwise load P sway with K = P/(L·(tan(kL/2)/(kL/2) − 1)) each, k² = P/EI (`timoshenko-gere1961`,
+/// section 1.11).
 #[test]
 fn a_preload_softens_a_guide_as_the_closed_form_says() {
     let text = include_str!("../../../../examples/compliant/preloaded-guide.toml");

@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 use std::path::Path;
 
 use common::{Solved, check, close, near};
@@ -15,7 +15,7 @@ use forcewright_contract::read;
 use forcewright_model::CheckState;
 
 /// What is tested here.
-const EXAMPLES: [&str; 9] = [
+const EXAMPLES: [&str; 11] = [
     "bistable-arch",
     "constant-force-pair",
     "folded-guide",
@@ -23,7 +23,9 @@ const EXAMPLES: [&str; 9] = [
     "lan-circular",
     "lan-end-effector",
     "lan-two-layers",
+    "parallel-guide",
     "slider-crank",
+    "tapered-spring",
     "williams-toggle",
 ];
 
@@ -142,6 +144,29 @@ fn folded_springs_are_as_stiff_as_their_sum() {
     near(guide.get("force_at_end"), k * 6e-3, 0.01, "linear");
 }
 
+/// Two springs that are clamped and guided, pushed at half their height, where the block does not tilt: 2·12EI/L³, with shear.
+#[test]
+fn a_parallel_guide_is_as_stiff_as_its_springs() {
+    let guide = solved("parallel-guide", None, &[]);
+    let spring = beam(&guide.design, "left");
+    let (ei, l) = (spring.section.bending_stiffness_n_m2(), spring.shape.length_m());
+    let k = 24.0 * ei / (l * l * l * (1.0 + 12.0 * ei / (spring.section.shear_stiffness_n() * l * l)));
+    near(k, 4.1e3, 0.03, "as the heading says");
+    near(guide.get("stiffness_initial"), k, 1e-6, "2·12EI/L³");
+}
+
+/// 1/k = ∫ x²/(E·I) + 1/(κGA) dx with the distance x from the tip, where the thickness is w·(1 + x/L): ∫ v²/(1 + v)³ dv = ln 2 − 5/8.
+#[test]
+fn a_tapered_spring_is_as_soft_as_its_integral() {
+    let spring = solved("tapered-spring", None, &[]);
+    let section = &beam(&spring.design, "leaf").section;
+    let (l, w, t, e) = (0.06, 0.3e-3, section.depth_m, section.young_pa);
+    let nu = section.poisson.expect("a metal");
+    let bending = 12.0 * l * l * l * (LN_2 - 0.625) / (e * t * w * w * w);
+    let shear = l * LN_2 / (5.0 / 6.0 * e / (2.0 * (1.0 + nu)) * t * w);
+    near(spring.get("stiffness_initial"), 1.0 / (bending + shear), 1e-6, "stiffness at rest");
+}
+
 /// Castigliano: 1/k = ∫ [(h − y)²/EI + cos²/EA + sin²/κGA] ds, with the height h of the tip and the angle of the axis to the load.
 #[test]
 fn the_finger_is_as_soft_as_castigliano_says() {
@@ -200,7 +225,7 @@ fn the_curved_beam_snaps_as_published() {
 }
 
 /// A beam-column between ends that keep their angle: (force along it, force across) where it is shortened by `along` and shifted by
-/// `across`. S. P. Timoshenko, J. M. Gere, "Theory of Elastic Stability", chapter 1: each half is a cantilever under P = EI·k² and T, with
+/// `across`. `timoshenko-gere1961`, chapter 1: each half is a cantilever under P = EI·k² and T, with
 /// a slope of T/P·(cos k(h − x)/cos kh − 1).
 fn beam_column(ei: f64, ea: f64, length: f64, [along, across]: [f64; 2]) -> [f64; 2] {
     let h = 0.5 * length;

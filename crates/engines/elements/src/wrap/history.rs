@@ -13,6 +13,9 @@ const LOOSE_LOG: f64 = -27.6;
 /// Cycles after which a loop must have closed.
 const LONGEST_SETTLING: usize = 50;
 
+/// Change of the displacement from cycle to cycle at which a loop counts as closed, over its width.
+const CLOSED: f64 = 1e-12;
+
 /// Points of the quadrature of the friction work.
 const POINTS: usize = 12;
 
@@ -120,6 +123,43 @@ impl Ahead<'_> {
         let (there_m, slope_m) = self.elongation_m(log);
         (there_m - elongation_m, slope_m)
     }
+}
+
+/// What can be loaded again and again until its loop closes.
+pub(super) trait Loaded {
+    /// Loads to a force, N, in one step without a reversal: the displacement there, m.
+    fn loaded_m(&mut self, force_n: f64) -> Result<f64, WrapError>;
+    /// Energy that friction took so far, J.
+    fn lost_j(&self) -> f64;
+}
+
+impl Loaded for History {
+    fn loaded_m(&mut self, force_n: f64) -> Result<f64, WrapError> {
+        Ok(self.load_to(force_n)?.displacement_m)
+    }
+
+    fn lost_j(&self) -> f64 {
+        self.friction_j
+    }
+}
+
+/// The closed loop between a force and its opposite, from the present state on.
+pub(super) fn settled(cables: &mut impl Loaded, force_n: f64) -> Result<Cycle, WrapError> {
+    super::positive("force_n", force_n)?;
+    let mut last = cables.loaded_m(force_n)?;
+    for cycles in 1..=LONGEST_SETTLING {
+        let before_j = cables.lost_j();
+        let down_m = cables.loaded_m(0.0)?;
+        let lowest_m = cables.loaded_m(-force_n)?;
+        let up_m = cables.loaded_m(0.0)?;
+        let highest_m = cables.loaded_m(force_n)?;
+        if (highest_m - last).abs() <= CLOSED * (highest_m - lowest_m).abs() || cycles == LONGEST_SETTLING {
+            let lost_j = cables.lost_j() - before_j;
+            return Ok(Cycle { displacements_m: [highest_m, lowest_m], lost_motion_m: down_m - up_m, lost_j, cycles });
+        }
+        last = highest_m;
+    }
+    Err(WrapError::Value { name: "force_n", value: force_n })
 }
 
 impl History {
@@ -238,18 +278,50 @@ impl History {
         finite("displacement_m", displacement_m)?;
         let inputs = self.inputs();
         let sides = self.ahead(&inputs);
-        let wanted_m = displacement_m - self.slide_m;
-        let mut logs = [sides[0].log_at(wanted_m), sides[1].log_at(-wanted_m)];
-        let over = (logs[0] - logs[1]).abs() > self.shared();
-        if over {
-            logs = self.slipping(&sides, logs[0] > logs[1], logs);
-        }
-        let step = self.report(&sides, logs, displacement_m, over);
-        let slide_m = if over { displacement_m - sides[0].elongation_m(logs[0]).0 - self.slide_m } else { 0.0 };
+        let (step, logs) = self.step_to(&sides, displacement_m);
+        let slide_m = if step.gross_slip { displacement_m - sides[0].elongation_m(logs[0]).0 - self.slide_m } else { 0.0 };
         self.friction_j += slide_m.abs() * step.force_n.abs();
         self.slide_m += slide_m;
         self.take(logs, displacement_m, &inputs);
         Ok(step)
+    }
+
+    /// The states that one step would reach, without a reversal, at each of some displacements, m; the drive stays as it is. What lies
+    /// between two turning points of a loop.
+    ///
+    /// # Errors
+    /// [`WrapError::Value`] for a displacement that is not finite.
+    ///
+    /// ```
+    /// # use forcewright_elements::wrap::{Drive, DriveSpec, Drum, History, Hold};
+    /// # let drum = |radius_m| Drum { radius_m, friction: 0.15 };
+    /// # let drive = Drive::new(&DriveSpec {
+    /// #     input: drum(0.01), output: drum(0.05), hold: Hold::Friction { wrap_rad: 24.3 }, output_wraps_rad: [20.0; 2],
+    /// #     spans_m: [0.025; 2], axial_stiffness_n: 50e3, preload_n: 200.0,
+    /// # }).expect("a drive");
+    /// let mut history = History::new(&drive).expect("finite wraps");
+    /// let ahead = history.along(&[50e-6, 100e-6]).expect("finite");
+    /// assert_eq!(ahead[1], history.move_to(100e-6).expect("finite"));
+    /// ```
+    pub fn along(&self, displacements_m: &[f64]) -> Result<Vec<Step>, WrapError> {
+        let inputs = self.inputs();
+        let sides = self.ahead(&inputs);
+        let one = |displacement_m: &f64| {
+            finite("displacement_m", *displacement_m)?;
+            Ok(self.step_to(&sides, *displacement_m).0)
+        };
+        displacements_m.iter().map(one).collect()
+    }
+
+    /// The step to a displacement, m, and the logarithms of its tensions.
+    fn step_to(&self, sides: &[Ahead<'_>; 2], displacement_m: f64) -> (Step, [f64; 2]) {
+        let wanted_m = displacement_m - self.slide_m;
+        let mut logs = [sides[0].log_at(wanted_m), sides[1].log_at(-wanted_m)];
+        let over = (logs[0] - logs[1]).abs() > self.shared();
+        if over {
+            logs = self.slipping(sides, logs[0] > logs[1], logs);
+        }
+        (self.report(sides, logs, displacement_m, over), logs)
     }
 
     /// The next state, in one step without a reversal, under a force, N.
@@ -292,21 +364,7 @@ impl History {
     /// assert!((cycle.lost_motion_m / (0.06 * 400.0 / (2.0 * 0.15 * 50e3 * 200.0)) - 1.0).abs() < 0.02);
     /// ```
     pub fn cycle(&mut self, force_n: f64) -> Result<Cycle, WrapError> {
-        super::positive("force_n", force_n)?;
-        let mut last = self.load_to(force_n)?.displacement_m;
-        for cycles in 1..=LONGEST_SETTLING {
-            let before_j = self.friction_j;
-            let down_m = self.load_to(0.0)?.displacement_m;
-            let lowest_m = self.load_to(-force_n)?.displacement_m;
-            let up_m = self.load_to(0.0)?.displacement_m;
-            let highest_m = self.load_to(force_n)?.displacement_m;
-            if (highest_m - last).abs() <= 1e-12 * (highest_m - lowest_m).abs() || cycles == LONGEST_SETTLING {
-                let lost_j = self.friction_j - before_j;
-                return Ok(Cycle { displacements_m: [highest_m, lowest_m], lost_motion_m: down_m - up_m, lost_j, cycles });
-            }
-            last = highest_m;
-        }
-        Err(WrapError::Value { name: "force_n", value: force_n })
+        settled(self, force_n)
     }
 
     fn shared(&self) -> f64 {

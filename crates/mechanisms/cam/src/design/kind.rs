@@ -42,6 +42,7 @@ pub(super) fn of_slider(spec: &Spec, diagnostics: &mut Diagnostics) {
         ("design.profile.for_torque", typed(d.profile.for_torque.as_ref()), TORQUE),
         ("design.profile.for_torque_profile", typed(d.profile.for_torque_profile.as_ref()), TORQUE),
         ("design.profile.for_torque_profile_file", typed(d.profile.for_torque_profile_file.as_ref()), TORQUE),
+        ("design.profile.for_guide_friction", typed(d.profile.for_guide_friction.as_ref()), TORQUE),
         ("design.bodies.follower_mass", typed(d.bodies.follower_mass.as_ref()), TORQUE),
         ("design.bodies.disc_inertia", typed(d.bodies.disc_inertia.as_ref()), TORQUE),
         ("motion.start_turn", typed(spec.motion.start_turn.as_ref()), TORQUE),

@@ -123,14 +123,6 @@ pub(super) fn released(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Rel
         ("return", typed(motion.back.as_ref())),
     ];
     refuse(spec, &others, "where it goes follows from the forces: leave it out", diagnostics);
-    if let Some(guide) = motion.guide.as_ref().filter(|g| g.value == "free") {
-        let message = "a slider that is let go is computed on its guide only";
-        diagnostics.push(
-            Diagnostic::error("E0612", guide.span, message)
-                .label("free to move sideways")
-                .help("leave `guide` out, or prescribe the motion"),
-        );
-    }
     let keys = "`start` and `duration`";
     let start = need(spec, motion.start.as_ref(), "start", [keys, "200 mm"], diagnostics);
     let duration = need(spec, motion.duration.as_ref(), "duration", [keys, "1 s"], diagnostics);
@@ -139,6 +131,7 @@ pub(super) fn released(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Rel
         weight_kg: si(&motion.hanging_mass).unwrap_or(0.0),
         weight_m_per_s2: si(&motion.hanging_gravity)?,
         damping_n_s_per_m: si(&motion.damping).unwrap_or(0.0),
+        sideways_m: None,
         start_m: start?,
         duration_s: duration?,
         stops_m: [0.0, si(&spec.design.stroke)?],
@@ -171,7 +164,10 @@ pub(super) fn check_mass(spec: &Spec, built: &Built, release: Option<&Release>, 
     let Some(release) = release else { return };
     let b = &built.bodies;
     let springs: f64 = built.springs.iter().map(|s| s.mass_kg).sum();
-    if b.slider_kg + b.brace_kg + b.roller_kg + springs + release.weight_kg > 0.0 {
+    // What hangs on a cable does not hold a free slider back sideways.
+    let free = spec.motion.guide.as_ref().is_some_and(|g| g.value == "free");
+    let hanging = if free { 0.0 } else { release.weight_kg };
+    if b.slider_kg + b.brace_kg + b.roller_kg + springs + hanging > 0.0 {
         return;
     }
     let place = spec.motion.law.as_ref().map_or_else(Span::default, |law| law.span);

@@ -4,7 +4,7 @@ use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_contract::studies::{Free, Purpose};
 use forcewright_study::evaluator::Variable;
 
-use crate::design::Design;
+use crate::design::{Design, whole};
 use crate::spec::Spec;
 use crate::springs::{Bank, Spring, SpringLaw};
 
@@ -32,6 +32,9 @@ enum Knob {
     Turn([bool; 2]),
     Offset([bool; 2]),
     Height,
+    RandomDeviation,
+    RandomCorrelation,
+    RandomSeed,
     ForForce,
     ForRate,
     ForRestLength,
@@ -39,6 +42,9 @@ enum Knob {
     ForFriction,
     Share,
 }
+
+/// Path of the number that says which random profile is drawn.
+pub(super) const SEED: &str = "errors.random_profile.seed";
 
 /// The numbers of a study, understood.
 #[derive(Clone, Debug)]
@@ -62,6 +68,9 @@ struct FromFile {
     for_rest_m: f64,
     starts_at_rest: bool,
     down: bool,
+    /// Rolling friction of rollers of any size. Without it the arm stays when the rollers change: scatter of making keeps it, and so does a
+    /// search where the file gives the arm.
+    rolling: Option<f64>,
 }
 
 impl Knobs {
@@ -90,7 +99,7 @@ impl Knobs {
             lower: free.lower,
             upper: free.upper,
         });
-        Some(Self { each, variables: variables.collect(), cuts, file: FromFile::of(spec) })
+        Some(Self { each, variables: variables.collect(), cuts, file: FromFile::of(spec, cuts) })
     }
 
     /// Whether a design tried has a cam of its own.
@@ -98,18 +107,23 @@ impl Knobs {
         self.cuts
     }
 
+    /// Steps of central differences, SI: none for a seed, of which no value follows smoothly.
+    pub(super) fn steps(&self) -> Vec<f64> {
+        let step = |v: &Variable| 1e-5 * v.nominal.abs().max(1e-3 * v.scale().min(1.0));
+        self.each.iter().zip(&self.variables).map(|(knob, v)| if matches!(knob, Knob::RandomSeed) { 0.0 } else { step(v) }).collect()
+    }
+
     /// Changes a copy of the design.
     pub(super) fn apply(&self, x: &[f64], design: &mut Design) {
         let mut file = self.file;
-        // Rollers first: a coefficient of rolling friction is an arm over their radius.
-        let is_roller = |knob: &Knob| matches!(knob, Knob::RollerDiameter);
-        for rollers in [true, false] {
-            for (knob, x) in self.each.iter().zip(x).filter(|(knob, _)| is_roller(knob) == rollers) {
-                self.turn(*knob, *x, design, &mut file);
-            }
+        for (knob, x) in self.each.iter().zip(x) {
+            self.turn(*knob, *x, design, &mut file);
         }
         // What several knobs may change together.
         let built = &mut design.built;
+        if let Some(friction) = file.rolling {
+            built.arm_m = friction * built.roller_m;
+        }
         for spring in &mut built.springs {
             spring.stretch_m = file.turns * file.pitch_m;
         }
@@ -143,7 +157,7 @@ impl Knobs {
                 }
             }
             Knob::RollingArm => built.arm_m = x,
-            Knob::RollingFriction => built.arm_m = x * built.roller_m,
+            Knob::RollingFriction => file.rolling = Some(x),
             Knob::Rate(index) => {
                 if let Some(spring) = built.springs.get_mut(index) {
                     set_rate(spring, x);
@@ -170,6 +184,9 @@ impl Knobs {
             Knob::Turn([right, left]) => file.turn_rad[which(right, left)] = x,
             Knob::Offset([right, left]) => file.offset_m[which(right, left)] = x,
             Knob::Height => built.height_m = x,
+            Knob::RandomDeviation => built.random.iter_mut().for_each(|r| r.deviation_m = x),
+            Knob::RandomCorrelation => built.random.iter_mut().for_each(|r| r.correlation_m = x),
+            Knob::RandomSeed => built.random.iter_mut().for_each(|r| r.seed = whole(x)),
             Knob::ForForce => purpose.law = crate::law::ForceLaw::constant(x),
             Knob::ForRate => file.for_rate = x,
             Knob::ForRestLength => file.for_rest_m = x,
@@ -199,7 +216,7 @@ pub(crate) fn set_rate(spring: &mut Spring, rate: f64) {
 }
 
 impl FromFile {
-    fn of(spec: &Spec) -> Self {
+    fn of(spec: &Spec, cuts: bool) -> Self {
         use crate::design::si;
         let (springs, errors, profile) = (&spec.design.springs, &spec.errors, &spec.design.profile);
         let or0 = |slot| si(slot).unwrap_or(0.0);
@@ -212,6 +229,7 @@ impl FromFile {
             for_rest_m: or0(&profile.for_rest_length),
             starts_at_rest: profile.for_start_length.is_none(),
             down: profile.compensate.as_ref().is_some_and(|c| c.value == "down"),
+            rolling: si(&spec.design.rolling_friction).filter(|_| cuts),
         }
     }
 }
@@ -245,6 +263,9 @@ fn knob(path: &str, cuts: bool) -> Result<Knob, &'static str> {
         "errors.profile_offset_right" => Knob::Offset([true, false]),
         "errors.profile_offset_left" => Knob::Offset([false, true]),
         "errors.profile_height" => Knob::Height,
+        "errors.random_profile.deviation" => Knob::RandomDeviation,
+        "errors.random_profile.correlation_length" => Knob::RandomCorrelation,
+        SEED => Knob::RandomSeed,
         "design.profile.for_force" => Knob::ForForce,
         "design.profile.for_rate" => Knob::ForRate,
         "design.profile.for_rest_length" => Knob::ForRestLength,

@@ -4,7 +4,7 @@ use forcewright_base::units::Dimension;
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
 
 use super::knobs::Knobs;
-use crate::analysis::{Behaviour, measure_scalars, moments};
+use crate::analysis::{Behaviour, Measured, measure_scalars, moments};
 use crate::cut::SIDES;
 use crate::design::{Design, Requirements};
 use crate::law::ForceLaw;
@@ -16,6 +16,9 @@ use crate::path::SidePath;
 pub(crate) const PANELS: usize = 40;
 /// Stations over the window.
 pub(crate) const STATIONS: usize = 2 * PANELS + 1;
+
+/// The metric of the motion that is compared with a slower one.
+const SLOWER: &str = "peak_force_ratio_to";
 
 /// Metrics that follow from the forces over the window.
 const OF_FORCES: [&str; 13] = [
@@ -34,26 +37,6 @@ const OF_FORCES: [&str; 13] = [
     "force_spread",
 ];
 
-/// Metrics that are values of their own, after the forces.
-pub(super) const SCALARS: [&str; 16] = [
-    "width",
-    "height",
-    "path_curvature_radius_min",
-    "undercut_travel",
-    "pressure_angle_max",
-    "spring_length_max",
-    "spring_length_min",
-    "contact_force_max",
-    "contact_force_min",
-    "friction_needed_max",
-    "guide_force_max",
-    "cam_length",
-    "peak_force_ratio",
-    "force_min_motion",
-    "contact_force_min_motion",
-    "moving_mass",
-];
-
 /// See the module.
 pub(super) struct Many {
     knobs: Knobs,
@@ -62,6 +45,10 @@ pub(super) struct Many {
     paths: Option<[SidePath; SIDES]>,
     window_m: [f64; 2],
     wanted: Option<ForceLaw>,
+    /// Metrics that are values of their own, after the forces.
+    scalars: Vec<&'static str>,
+    /// Metrics of the forces that a search limits, by their places in [`OF_FORCES`]: values after those.
+    held: Vec<usize>,
     outputs: Vec<Output>,
     measures: Vec<Measure>,
 }
@@ -74,21 +61,24 @@ impl Many {
     pub(super) fn new(design: &Design, knobs: Knobs) -> Self {
         let paths = if knobs.cuts() { None } else { design.cut().ok().map(|cut| design.paths(&cut)) };
         let nominal = Behaviour::of(design).ok();
-        let window_m = nominal.map_or([0.0, design.purpose.stroke_m], |b| b.window_m);
+        let window_m = nominal.as_ref().map_or([0.0, design.purpose.stroke_m], |b| b.window_m);
+        let measured = nominal.map_or_else(Measured::none, |b| measure_scalars(design, &b));
+        let limited = limited(design.requirements.as_ref());
+        let mut scalars = scalars(&measured, &OF_FORCES, &limited, knobs.cuts());
+        // The slower motion takes as long as the motion: it is computed for a limit only.
+        scalars.retain(|name| *name != SLOWER || limited.contains(name));
+        let held = held(&OF_FORCES, &limited, knobs.cuts());
         let force =
             |name: &str, index: usize| Output { name: name.to_owned(), unit: "N", values: index * STATIONS..(index + 1) * STATIONS };
         let mut outputs = vec![force("force_up", 0), force("force_down", 1), force("force", 2)];
-        for (index, name) in SCALARS.iter().enumerate() {
-            let unit = METRICS.iter().find(|m| m.name == *name).map_or("1", |m| m.dimension.si_symbol());
-            outputs.push(Output { name: (*name).to_owned(), unit, values: 3 * STATIONS + index..3 * STATIONS + index + 1 });
-        }
+        outputs.extend(outputs_of(scalars.iter().copied().chain(held.iter().map(|i| OF_FORCES[*i]))));
         let wanted = design.requirements.as_ref().and_then(|r| r.force.as_ref()).map(|(law, _)| law.clone());
-        // No value of a study is about the slower motion.
-        let motion = design.motion.map(|motion| Motion { reference_s: None, ..motion });
+        let slower = scalars.contains(&SLOWER);
+        let motion = design.motion.map(|motion| Motion { reference_s: motion.reference_s.filter(|_| slower), ..motion });
         let base = Design { motion, ..design.clone() };
         let lengths = [design.built.min_length_m, design.built.max_length_m];
-        let measures = measures(OF_FORCES.iter().chain(&SCALARS), design.requirements.as_ref(), lengths, design.moves());
-        Self { knobs, base, paths, window_m, wanted, outputs, measures }
+        let measures = measures(OF_FORCES.iter().chain(&scalars), design.requirements.as_ref(), lengths, design.moves());
+        Self { knobs, base, paths, window_m, wanted, scalars, held, outputs, measures }
     }
 
     /// Travels at which forces are computed, m.
@@ -128,6 +118,33 @@ pub(crate) fn of_forces(values: &[f64], wanted: Option<&[f64]>, [from, to]: [f64
         (mean_up - mean_down) / mean_still,
         (high - low) / (high + low),
     ]
+}
+
+/// Metrics that the requirements limit.
+pub(crate) fn limited(requirements: Option<&Requirements>) -> Vec<&'static str> {
+    let named = requirements.iter().flat_map(|r| &r.limits).map(|limit| METRICS[limit.metric].name);
+    named.chain(requirements.and_then(|r| r.hysteresis).map(|_| "hysteresis")).collect()
+}
+
+/// Metrics that a study takes as values of their own: those that the design has, in the order of the list. A sample also takes what is
+/// limited and the design lacks: it does not keep the limit, as in its analysis. A search could not begin.
+pub(crate) fn scalars(measured: &Measured, of_curves: &[&str], limited: &[&str], search: bool) -> Vec<&'static str> {
+    let taken = |name: &&str| measured.get(name).is_some() || (!search && limited.contains(name));
+    METRICS.iter().map(|m| m.name).filter(|name| !of_curves.contains(name) && taken(name)).collect()
+}
+
+/// Metrics of the curves that a search has to keep to beside the band, by their places in the list.
+pub(crate) fn held(of_curves: &[&str], limited: &[&str], search: bool) -> Vec<usize> {
+    let is_held = |name: &str| search && limited.contains(&name) && !name.ends_with("_deviation");
+    (0..of_curves.len()).filter(|i| is_held(of_curves[*i])).collect()
+}
+
+/// Outputs of single values, which follow those of the curves.
+pub(crate) fn outputs_of(names: impl Iterator<Item = &'static str>) -> impl Iterator<Item = Output> {
+    names.enumerate().map(|(index, name)| {
+        let unit = METRICS.iter().find(|m| m.name == name).map_or("1", |m| m.dimension.si_symbol());
+        Output { name: name.to_owned(), unit, values: 3 * STATIONS + index..3 * STATIONS + index + 1 }
+    })
 }
 
 /// What a study measures: names of metrics, of which the requirements limit some.
@@ -218,24 +235,25 @@ impl Evaluator for Many {
         out.values.extend(window.iter().map(|s| s.up.force_n));
         out.values.extend(window.iter().map(|s| s.down.force_n));
         out.values.extend(window.iter().map(|s| s.still.force_n));
-        let scalars = measure_scalars(&room.design, &behaviour);
-        out.values.extend(SCALARS.iter().map(|name| scalars.get(name).unwrap_or(0.0)));
+        let measured = measure_scalars(&room.design, &behaviour);
+        out.values.extend(self.scalars.iter().map(|name| measured.get(name).unwrap_or(f64::NAN)));
+        let of_forces = of_forces(&out.values, None, self.window_m);
+        out.values.extend(self.held.iter().map(|i| of_forces[*i]));
         out.jacobian.clear();
         if derivatives {
-            let steps: Vec<f64> = self.knobs.variables.iter().map(|v| 1e-5 * v.nominal.abs().max(1e-3 * v.scale().min(1.0))).collect();
-            forcewright_study::differences::jacobian_with_steps(self, x, &steps, out, workspace)?;
+            forcewright_study::differences::jacobian_with_steps(self, x, &self.knobs.steps(), out, workspace)?;
         }
         Ok(())
     }
 
     fn measure(&self, _: &[f64], values: &[f64], out: &mut Vec<f64>, _: &mut Workspace) {
         out.clear();
-        if values.len() != 3 * STATIONS + SCALARS.len() {
+        if values.len() != 3 * STATIONS + self.scalars.len() + self.held.len() {
             out.resize(self.measures.len(), f64::NAN);
             return;
         }
         let wanted = self.wanted.as_ref().map(|_| self.wanted_n());
         out.extend(of_forces(values, wanted.as_deref(), self.window_m));
-        out.extend(&values[3 * STATIONS..]);
+        out.extend(&values[3 * STATIONS..3 * STATIONS + self.scalars.len()]);
     }
 }

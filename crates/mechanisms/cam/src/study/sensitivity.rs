@@ -5,7 +5,7 @@ use forcewright_base::units::format_si;
 use forcewright_contract::numbers::{Number, numbers_of};
 use forcewright_contract::studies::{Free, Purpose};
 
-use super::knobs::Knobs;
+use super::knobs::{Knobs, SEED};
 use crate::analysis::{Behaviour, Measured, measure};
 use crate::cut::SIDES;
 use crate::design::Design;
@@ -15,7 +15,7 @@ use crate::spec::Spec;
 /// Intervals of the stroke and of the window; two of the latter per panel of Simpson's rule.
 const INTERVALS: usize = 80;
 /// Parts of the file whose `±` is scatter of making.
-const ROOTS: [&str; 2] = ["design.", "material."];
+const ROOTS: [&str; 3] = ["design.", "material.", "errors."];
 
 /// The numbers of a file with a `±` that change the force.
 #[derive(Clone, Debug)]
@@ -44,7 +44,8 @@ impl Scatter {
         let numbers = numbers_of(spec);
         let known = |number: &Number| {
             let [lower, upper] = number.tolerance?.deviations_si(number.si)?;
-            let rooted = ROOTS.iter().any(|root| number.path.starts_with(root));
+            // Which profile is drawn has no ends.
+            let rooted = ROOTS.iter().any(|root| number.path.starts_with(root)) && number.path != SEED;
             let free = Free { number: number.clone(), lower: number.range.min, upper: number.range.max };
             // A number that a study cannot change is no cause here; a study that names it says why.
             let usable = Knobs::new(spec, std::slice::from_ref(&free), Purpose::Scatter, &mut Diagnostics::default()).is_some();

@@ -141,21 +141,29 @@ pub(crate) fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
         return m;
     }
     torques(design, behaviour, &mut m);
-    forces(behaviour, &mut m);
-    moving(behaviour, &mut m);
-    let sense = behaviour.mechanism.cut.sense();
-    let loads = behaviour.window.iter().map(|s| [s.up.normal_n.max(s.down.normal_n).max(0.0), curvature_per_m(&s.pose.place, sense)]);
-    contact_pressure(&design.materials, design.built.thickness_m, behaviour.mechanism.roller_m, loads, &mut m);
+    whole(design, behaviour, &mut m);
     m
 }
 
+/// What the whole turn and the motion say.
+fn whole(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
+    forces(behaviour, m);
+    moving(behaviour, m);
+    let sense = behaviour.mechanism.cut.sense();
+    let loads = behaviour.window.iter().map(|s| [s.up.normal_n.max(s.down.normal_n).max(0.0), curvature_per_m(&s.pose.place, sense)]);
+    contact_pressure(&design.materials, design.built.thickness_m, behaviour.mechanism.roller_m, loads, m);
+    // Without friction the work is what the springs store.
+    if let (Some(first), Some(last)) = (behaviour.stations.first(), behaviour.stations.last()) {
+        m.set("energy", behaviour.mechanism.springs.energy_j(first.still.spring_m, last.still.spring_m));
+    }
+}
+
 /// Those that studies of many designs take as they are: all but what follows from the torques over the window, and from the outline.
-pub(crate) fn measure_scalars(behaviour: &Behaviour) -> Measured {
+pub(crate) fn measure_scalars(design: &Design, behaviour: &Behaviour) -> Measured {
     let mut m = Measured::none();
     path(behaviour, &mut m);
     mass(behaviour, &mut m);
-    forces(behaviour, &mut m);
-    moving(behaviour, &mut m);
+    whole(design, behaviour, &mut m);
     m
 }
 
@@ -176,7 +184,8 @@ fn path(behaviour: &Behaviour, m: &mut Measured) {
     m.set("undercut_turn", mechanism.corner.map_or(0.0, |c| c.turn_rad));
 }
 
-fn outline(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
+/// Size of the disc, and what is left of it about the shaft.
+pub(crate) fn outline(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
     let mechanism = &behaviour.mechanism;
     let [_, to] = mechanism.cut.range_m();
     let start = outline::start_m(mechanism);
@@ -222,10 +231,6 @@ fn torques(design: &Design, behaviour: &Behaviour, m: &mut Measured) {
             (s.up.torque_nm / wanted - 1.0).abs().max((s.down.torque_nm / wanted - 1.0).abs())
         };
         m.set("torque_deviation", extent(window, off)[1]);
-    }
-    // Without friction the work is what the springs store.
-    if let (Some(first), Some(last)) = (behaviour.stations.first(), behaviour.stations.last()) {
-        m.set("energy", behaviour.mechanism.springs.energy_j(first.still.spring_m, last.still.spring_m));
     }
 }
 

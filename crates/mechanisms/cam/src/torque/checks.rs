@@ -9,7 +9,7 @@ use super::design::Design;
 use super::mechanism::Stop;
 use crate::analysis::{Measured, extent};
 use crate::design::Requirements;
-use crate::rules::{NO_VALUE, Rules, percent};
+use crate::rules::{Rules, percent};
 
 /// Requirements in the order of the language, then the family's own rules.
 pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Check> {
@@ -18,13 +18,11 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
         requirements: design.requirements.as_ref(),
         units: &design.units,
         measured,
-        missing: behaviour.stopped.map_or_else(
-            || NO_VALUE.to_owned(),
-            |(at, why)| {
-                let what = if matches!(why, Stop::Locks(_)) { "friction locks the disc" } else { "no roller stands on the disc" };
-                format!("{what} at a turn of {}; see the status", turn(at))
-            },
-        ),
+        unreached: behaviour.stopped.map(|(at, why)| {
+            let what = if matches!(why, Stop::Locks(_)) { "friction locks the disc" } else { "no roller stands on the disc" };
+            format!("{what} at a turn of {}; see the status", turn(at))
+        }),
+        moves: [design.motion.is_some(), behaviour.motion.is_some()],
         arm_m: design.built.arm_m,
         lengths_m: design.built.lengths_m,
         friction: design.friction,
@@ -72,6 +70,7 @@ fn torque(rules: &Rules<'_>, requirements: &Requirements, behaviour: &Behaviour)
 /// CAM015: the turn that is reached, undercut or not.
 fn turned(design: &Design, rules: &Rules<'_>, requirements: &Requirements, behaviour: &Behaviour) -> Option<Check> {
     let wanted = requirements.stroke_m?;
+    let turn = |rad: f64| format_si(rad, &design.units.travel, 4);
     let start = behaviour.stations.first().map_or(0.0, Station::turn_rad);
     let reached = behaviour.stopped.map_or(design.purpose.turn_rad, |(at, _)| at) - start;
     let comparison = Comparison {
@@ -80,7 +79,19 @@ fn turned(design: &Design, rules: &Rules<'_>, requirements: &Requirements, behav
         sense: Sense::AtLeast,
         display: design.units.travel.clone(),
         basis: "turn for which the disc is cut, the rollers stand on it, and it can be turned".to_owned(),
-        fix: "raise `design.turn`; spring length and disc grow with it".to_owned(),
+        fix: match behaviour.stopped {
+            None if start > 0.0 && behaviour.mechanism.pose(0.0).is_ok() => {
+                format!(
+                    "friction locks the first {}: less of it, springs stretched more at the start, or a larger `design.turn`",
+                    turn(start)
+                )
+            }
+            None => "raise `design.turn`; spring length and disc grow with it".to_owned(),
+            Some((_, Stop::Locks(_))) => "friction locks the disc on the way: less of it, or a larger `start_radius`".to_owned(),
+            Some((_, Stop::NotAssembled(_))) => {
+                "no roller stands on the disc from there: rollers nearer to those for which it was cut".to_owned()
+            }
+        },
         ..rules.base("CAM015", "turn", "Turn", "undercut_turn")
     };
     Some(comparison.judge())

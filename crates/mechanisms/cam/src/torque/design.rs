@@ -32,6 +32,8 @@ pub struct Design {
     pub motion: Option<Motion>,
     /// Diameter of the hole for the shaft, m.
     pub shaft_m: Option<f64>,
+    /// Pitch of the screw that stretches the springs, m.
+    pub adjust_pitch_m: Option<f64>,
     /// How the parts are made.
     pub making: Making,
     /// Materials of cam and roller.
@@ -128,6 +130,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         built: built_of(spec, springs?, extension, (roller_m, arm?)),
         motion,
         shaft_m: si(&spec.design.disc.shaft_diameter),
+        adjust_pitch_m: si(&spec.design.springs.adjust.pitch),
         making: Making {
             chord_error_m: si(&spec.parts.chord_error)?,
             wall_m: si(&spec.parts.wall).unwrap_or(2.0 * roller_m),
@@ -147,15 +150,12 @@ fn purpose_of(spec: &Spec, extension: bool, diagnostics: &mut Diagnostics) -> Op
     let profile = &spec.design.profile;
     let slots = LawSlots { level: &profile.for_torque, typed: &profile.for_torque_profile, file: &profile.for_torque_profile_file };
     let (law, springs) = law_and_springs(spec, extension, (&slots, &TORQUE), diagnostics);
-    let rolling = si(&profile.for_friction)?;
-    // What is compensated of the rollers' resistance is compensated of the guides' as well.
-    let guide = if rolling > 0.0 { si(&spec.design.guide_friction).unwrap_or(0.0) } else { 0.0 };
     Some(Purpose {
         law: law?,
         springs: springs?,
         start_radius_m: si(&spec.design.disc.start_radius)?,
-        friction: compensated(spec, rolling),
-        guide_friction: compensated(spec, guide),
+        friction: compensated(spec, si(&profile.for_friction)?),
+        guide_friction: compensated(spec, si(&profile.for_guide_friction)?),
         turn_rad: si(&spec.design.turn)?,
     })
 }
@@ -203,48 +203,67 @@ fn built_of(spec: &Spec, springs: Vec<Spring>, extension: bool, (roller_m, arm_m
     }
 }
 
-/// E0607, E0614, E0615: rollers, outline and shaft find room.
-fn fits(spec: &Spec, design: &Design, cut: &Arc<Cut>, diagnostics: &mut Diagnostics) {
+/// What finds no room.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Misfit {
+    /// The rollers meet in the middle.
+    Meet,
+    /// Nothing leads from the end of a lobe to the start of the other.
+    Open,
+    /// The hole for the shaft cuts through the outline.
+    Shaft {
+        /// How near the outline comes to the middle, m.
+        least_m: f64,
+    },
+}
+
+/// Whether rollers, outline and shaft find room on a disc that was cut.
+pub(super) fn misfit(design: &Design, cut: &Arc<Cut>) -> Option<Misfit> {
     let mechanism = design.mechanism(cut);
     let [from, to] = cut.range_m();
-    let length = |m: f64| format_si(m, &design.units.length, 4);
-    let place = |slot: Option<Span>| slot.unwrap_or_else(|| place_of(&spec.design));
     let least = [from, to].into_iter().map(|l| cut.at(l)[1].value()).fold(f64::INFINITY, f64::min);
     if least < design.cut_roller_m {
-        let at = place(spec.design.roller_diameter.as_ref().map(|r| r.span));
-        diagnostics.push(
+        return Some(Misfit::Meet);
+    }
+    let start = outline::start_m(&mechanism);
+    let Some(closing) = outline::closing(&mechanism, start, to) else { return Some(Misfit::Open) };
+    let [least_m, _] = outline::reach_m(&mechanism, [start, to], &closing);
+    design.shaft_m.filter(|d| 0.5 * d >= least_m).map(|_| Misfit::Shaft { least_m })
+}
+
+/// E0607, E0614, E0615: rollers, outline and shaft find room.
+fn fits(spec: &Spec, design: &Design, cut: &Arc<Cut>, diagnostics: &mut Diagnostics) {
+    let Some(misfit) = misfit(design, cut) else { return };
+    let length = |m: f64| format_si(m, &design.units.length, 4);
+    let place = |slot: Option<Span>| slot.unwrap_or_else(|| place_of(&spec.design));
+    diagnostics.push(match misfit {
+        Misfit::Meet => {
+            let at = place(spec.design.roller_diameter.as_ref().map(|r| r.span));
             Diagnostic::error("E0607", at, "the rollers run into each other").label("where they come closest to the shaft").help(
                 if design.built.extension {
                     "choose a larger `start_radius` or smaller rollers"
                 } else {
                     "choose a larger `start_radius`, smaller rollers or a shorter turn"
                 },
-            ),
-        );
-        return;
-    }
-    let start = outline::start_m(&mechanism);
-    let Some(closing) = outline::closing(&mechanism, start, to) else {
-        let at = place(spec.design.turn.as_ref().map(|t| t.span));
-        diagnostics.push(
+            )
+        }
+        Misfit::Open => {
+            let at = place(spec.design.turn.as_ref().map(|t| t.span));
             Diagnostic::error("E0614", at, "the outline does not find back from the end of a lobe to the start of the other")
                 .label("two lobes and what joins them share a whole turn")
-                .help(room::advice(design)),
-        );
-        return;
-    };
-    let [least, _] = outline::reach_m(&mechanism, [start, to], &closing);
-    if let Some(shaft) = design.shaft_m.filter(|d| 0.5 * d >= least) {
-        let at = place(spec.design.disc.shaft_diameter.as_ref().map(|t| t.span));
-        diagnostics.push(
-            Diagnostic::error("E0615", at, format!("a hole of {} for the shaft cuts through the outline of the disc", length(shaft)))
+                .help(room::advice(design))
+        }
+        Misfit::Shaft { least_m } => {
+            let at = place(spec.design.disc.shaft_diameter.as_ref().map(|t| t.span));
+            let shaft = length(design.shaft_m.unwrap_or(0.0));
+            Diagnostic::error("E0615", at, format!("a hole of {shaft} for the shaft cuts through the outline of the disc"))
                 .label("too large")
                 .help(format!(
                     "the outline comes as near as {} to the middle: choose a thinner shaft or a larger `start_radius`",
-                    length(least)
-                )),
-        );
-    }
+                    length(least_m)
+                ))
+        }
+    });
 }
 
 fn cannot_be_cut(error: &CutError, spec: &Spec, extension: bool) -> Diagnostic {

@@ -29,22 +29,10 @@ struct Losses<'a> {
 impl Losses<'_> {
     /// Difference of the means over the mean, with parts of the rolling friction and of that of the guides.
     fn hysteresis(&self, [rolling, guide]: [f64; 2]) -> f64 {
-        let recut = self.design.purpose.guide_friction != 0.0 && guide < 1.0;
-        let other = recut.then(|| {
-            // The disc is cut for the guides' friction as it is typed.
-            let mut other = self.design.clone();
-            other.purpose.guide_friction *= guide;
-            Behaviour::of(&other)
-        });
-        let behaviour = match &other {
-            Some(Ok(other)) => other,
-            Some(Err(_)) => return f64::NAN,
-            None => self.behaviour,
-        };
-        let mut mechanism = behaviour.mechanism.clone();
+        let mut mechanism = self.behaviour.mechanism.clone();
         mechanism.arm_m = self.design.built.arm_m * rolling;
         mechanism.guide_friction = self.design.built.guide_friction * guide;
-        let mean = |sense| moments(&behaviour.window, |s| mechanism.at_rest(&s.pose, sense).torque_nm)[0];
+        let mean = |sense| moments(&self.behaviour.window, |s| mechanism.at_rest(&s.pose, sense).torque_nm)[0];
         (mean(Sense::Up) - mean(Sense::Down)) / mean(Sense::Frictionless)
     }
 

@@ -10,13 +10,14 @@ use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::judge::Comparison;
 use forcewright_curves::fit::{Arcs, Oriented, arcs};
 use forcewright_curves::{Profile, Segment};
-use forcewright_model::{Check, Hole, NoPart, Part, PartSet, Sense, Sheet};
+use forcewright_model::{Check, Hole, NoPart, Part, PartSet, Sheet};
 
 use super::cut::Cut;
 use super::design::Design;
 use super::mechanism::Mechanism;
 use super::outline::{Closing, closing, reach_m, start_m, surface};
-use crate::parts::{RIGID, deviation, roller};
+use crate::mechanism::Sense;
+use crate::parts::{Order, RIGID, deviation, roller, springs_to_order};
 use crate::path::{Vector, frame};
 
 /// Places at which the arcs are compared with the profile.
@@ -163,7 +164,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
     Ok(PartSet {
         parts: vec![disc, rollers, axle],
         marks: Vec::new(),
-        sheets: vec![inspection(&mechanism, &lobe)],
+        sheets: vec![inspection(&mechanism, &lobe), order(design, &mechanism)],
         display: design.units.length.clone(),
         checks: vec![chord_check(design, cost)],
     })
@@ -188,6 +189,23 @@ fn notes(design: &Design, mechanism: &Mechanism, lobe: &Lobe, cost: f64) -> Vec<
         ));
     }
     notes
+}
+
+/// The springs to order, and what a turn of the adjusting screw does.
+fn order(design: &Design, mechanism: &Mechanism) -> Sheet {
+    let whole = design.purpose.turn_rad;
+    let at = |turn: f64| mechanism.pose(turn).ok().map(|pose| mechanism.at_rest(&pose, Sense::Frictionless));
+    let start = mechanism.at(start_m(mechanism)).at;
+    let ends = [2.0 * maths::hypot(start[0], start[1]), at(whole).map_or(f64::NAN, |i| i.spring_m)];
+    springs_to_order(&Order {
+        springs: &design.built.springs,
+        extension: design.built.extension,
+        lengths_m: [ends[0].min(ends[1]), ends[0].max(ends[1])],
+        pitch_m: design.adjust_pitch_m,
+        middle: at(0.5 * whole).map(|i| [i.spring_m, i.torque_nm]),
+        per_turn: "torque of the mechanism per turn of the screw at half the way / N*m",
+        gives: "torque",
+    })
 }
 
 /// Places of a lobe to be measured: the exact profile, its normal, and what the measured deviation does to the torque.
@@ -233,7 +251,7 @@ fn chord_check(design: &Design, cost: f64) -> Check {
         required: false,
         value: Some(cost),
         limit: band.map(|b| 0.1 * b),
-        sense: Sense::AtMost,
+        sense: forcewright_model::Sense::AtMost,
         dimension: Dimension::Ratio,
         display: crate::rules::percent(),
         scale: None,

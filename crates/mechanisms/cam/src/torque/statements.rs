@@ -45,7 +45,7 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Status {
 
 /// Which equations were solved and how.
 pub(crate) fn model(design: &Design) -> Vec<Statement> {
-    let path = if design.purpose.friction == 0.0 {
+    let path = if design.purpose.friction == 0.0 && design.purpose.guide_friction == 0.0 {
         "The work of the wanted torque equals the energy of the springs, ∫T dθ = E: the path of the rollers' centres on the disc follows in closed form. Derivatives are exact."
     } else {
         "The path follows from the balance of the torques with friction in one direction, integrated over the springs' deformation with a method of fifth order. Derivatives come from the equation itself."

@@ -1,0 +1,224 @@
+//! Cables: from the catalogue or by their values.
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
+use forcewright_base::text::closest;
+use forcewright_base::units::{Dimension, Quantity, Unit, format_si};
+use forcewright_contract::describe::{Located, Origin, Slot};
+use forcewright_elements::cables::{self, Construction};
+use forcewright_elements::materials::Property;
+
+use super::{Built, place_of, si};
+use crate::geometry::{Drive, GeometryError};
+use crate::spec::{self, Spec};
+
+/// A cable of the drive, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cable {
+    /// Construction of the catalogue, if it is from there.
+    pub construction: Option<&'static Construction>,
+    /// Nominal diameter, m.
+    pub diameter_m: f64,
+    /// AE, N.
+    pub axial_stiffness_n: f64,
+    /// Of the straight cable, N.
+    pub breaking_n: Option<f64>,
+    /// kg/m.
+    pub mass_kg_per_m: Option<f64>,
+    /// Least diameter of a drum over that of the cable.
+    pub least_ratio: Option<f64>,
+    /// Diameter of the outer wires, m.
+    pub wire_m: Option<f64>,
+    /// Young's modulus of the wires, Pa.
+    pub wire_pa: Option<f64>,
+    /// Along the cable, 1/K.
+    pub expansion_per_k: Option<f64>,
+    /// Part of its tension lost in bending round the input drum.
+    pub bending_loss: Option<f64>,
+    /// Groove lines of its two ends.
+    pub lines: [i32; 2],
+    /// At assembly, N.
+    pub preload_n: f64,
+    /// Part of it that bedding in and creep take.
+    pub preload_loss: f64,
+    /// Keys of the works that catalogue values were taken from.
+    pub sources: Vec<&'static str>,
+}
+
+impl Cable {
+    /// Preload after bedding in and at the temperature given, N. Drums and frame of one expansion make the whole path longer by
+    /// α ΔT, the cable by its own: `ΔT_p = AE (α − α_c) ΔT`, the same everywhere.
+    pub fn preload_left_n(&self, built: &Built) -> f64 {
+        let apart = built.expansion_per_k.unwrap_or(0.0) - self.expansion_per_k.unwrap_or(0.0);
+        let warmed = if built.warmer_k == 0.0 { 0.0 } else { self.axial_stiffness_n * apart * built.warmer_k };
+        self.preload_n * (1.0 - self.preload_loss) + warmed
+    }
+}
+
+/// E0703: cables that are complete, and of one diameter.
+pub(super) fn cables_of(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Vec<Cable>> {
+    let place = place_of(&spec.design);
+    if spec.design.cables.is_empty() {
+        return None;
+    }
+    let mut all: Vec<Cable> = Vec::new();
+    for member in &mut spec.design.cables {
+        let span = member.name.span;
+        let Some(cable) = cable_of(&mut member.value, span, diagnostics) else { continue };
+        if let Some(first) = all.first().filter(|f| (f.diameter_m / cable.diameter_m - 1.0).abs() > 1e-9) {
+            let at = member.value.diameter.as_ref().or(None).map_or(span, |d| d.span);
+            let mm = Unit::parse("mm").unwrap_or_else(|_| Unit::si(Dimension::Length));
+            let error = Diagnostic::error("E0703", at, "cables of different diameters do not fit the same grooves");
+            let one = format_si(first.diameter_m, &mm, 4);
+            diagnostics.push(error.label("another diameter").help(format!("the first has {one}: give all cables of a drive one diameter")));
+        }
+        all.push(cable);
+    }
+    if all.is_empty() && !diagnostics.has_errors() {
+        diagnostics.push(Diagnostic::error("E0703", place, "the drive has no cable").label("this table").help("add `[[design.cables]]`"));
+    }
+    Some(all)
+}
+
+fn cable_of(typed: &mut spec::Cable, span: Span, diagnostics: &mut Diagnostics) -> Option<Cable> {
+    let before = diagnostics.errors();
+    let construction = typed.catalogue.clone().and_then(|name| fill(typed, &name, diagnostics));
+    if diagnostics.errors() > before {
+        return None;
+    }
+    let mut missing = |slot: &Slot<Quantity>, key: &str, help: &str| {
+        if slot.is_none() {
+            let error = Diagnostic::error("E0703", span, format!("the cable's `{key}` is not known"));
+            diagnostics.push(error.label("this cable").help(help.to_owned()));
+        }
+    };
+    missing(&typed.diameter, "diameter", "give `diameter`, or `use = \"steel 7x19 1.5 mm\"`");
+    let help = match construction {
+        Some(construction) => format!("no source gives it for {}: measure it at the preload it will have, and give `axial_stiffness`", construction.name),
+        None => "give `axial_stiffness`, or a construction of the catalogue with `use`".to_owned(),
+    };
+    missing(&typed.axial_stiffness, "axial_stiffness", &help);
+    Some(Cable {
+        construction,
+        diameter_m: si(&typed.diameter)?,
+        axial_stiffness_n: si(&typed.axial_stiffness)?,
+        breaking_n: si(&typed.breaking_force),
+        mass_kg_per_m: si(&typed.mass),
+        least_ratio: si(&typed.min_bend_ratio),
+        wire_m: si(&typed.wire_diameter),
+        wire_pa: si(&typed.wire_modulus),
+        expansion_per_k: si(&typed.expansion),
+        bending_loss: si(&typed.bending_loss),
+        // Placed when the number of turns is known.
+        lines: [0, 0],
+        preload_n: si(&typed.preload)?,
+        preload_loss: si(&typed.preload_loss).unwrap_or(0.0),
+        sources: construction.map_or_else(Vec::new, |c| sources_of(typed, c)),
+    })
+}
+
+/// Splits `steel 7x19 1.5 mm` into a name and a diameter.
+fn name_and_diameter(text: &str) -> (&str, Option<Quantity>) {
+    let text = text.trim();
+    let breaks: Vec<usize> = text.char_indices().filter(|(_, c)| c.is_whitespace()).map(|(i, _)| i).collect();
+    // The unit may stand apart from its number.
+    for at in breaks.iter().rev().take(2) {
+        if let Ok(quantity) = Quantity::parse(text[*at..].trim(), Dimension::Length) {
+            return (text[..*at].trim(), Some(quantity));
+        }
+    }
+    (text, None)
+}
+
+/// Fills what the catalogue knows; the diameter of the name counts unless one is typed.
+fn fill(typed: &mut spec::Cable, name: &Located<String>, diagnostics: &mut Diagnostics) -> Option<&'static Construction> {
+    let (construction, diameter) = name_and_diameter(&name.value);
+    let Some(entry) = cables::find(construction) else {
+        let names: Vec<&str> = cables::catalogue().iter().map(|c| c.name.as_str()).collect();
+        let near = closest(construction, names.iter().copied());
+        let listed = format!("the catalogue has {}", names.join(", "));
+        let error = Diagnostic::error("E0703", name.span, "no such cable in the catalogue").label("not known");
+        diagnostics.push(error.help(near.map_or_else(|| listed.clone(), |n| format!("did you mean \"{n}\"? {listed}"))));
+        return None;
+    };
+    if let (None, Some(value)) = (&typed.diameter, diameter) {
+        typed.diameter = Some(Located { value, span: name.span, origin: Origin::File });
+    }
+    let diameter_m = si(&typed.diameter)?;
+    let put = |slot: &mut Slot<Quantity>, value: Option<f64>, property: Option<&Property>, unit: &str| {
+        if let (None, Some(value), Ok(unit)) = (&slot, value, Unit::parse(unit)) {
+            let from = property.map_or_else(|| entry.name.clone(), |p| format!("{}, {} ({})", entry.name, p.kind, p.source));
+            *slot = Some(Located { value: Quantity { si: value, unit, tolerance: None }, span: name.span, origin: Origin::Catalogue(from) });
+        }
+    };
+    let listed = entry.size(diameter_m);
+    let strength = listed.map(|s| &s.breaking_force_n).or(entry.strength_over_square_pa.as_ref());
+    put(&mut typed.axial_stiffness, entry.axial_stiffness_n(diameter_m), entry.stiffness_over_square_pa.as_ref(), "N");
+    put(&mut typed.breaking_force, entry.breaking_force_n(diameter_m), strength, "N");
+    put(&mut typed.mass, entry.mass_kg_per_m(diameter_m), listed.and_then(|s| s.mass_kg_per_m.as_ref()), "g/m");
+    put(&mut typed.min_bend_ratio, entry.least_ratio.as_ref().map(|p| p.value), entry.least_ratio.as_ref(), "");
+    put(&mut typed.wire_diameter, entry.wire_m(diameter_m), None, "mm");
+    Some(entry)
+}
+
+/// Works behind the values that the catalogue filled in.
+fn sources_of(typed: &spec::Cable, entry: &'static Construction) -> Vec<&'static str> {
+    let filled = |slot: &Slot<Quantity>| matches!(slot, Some(Located { origin: Origin::Catalogue(_), .. }));
+    let any = [&typed.axial_stiffness, &typed.breaking_force, &typed.min_bend_ratio, &typed.mass].into_iter().any(filled);
+    let mut keys: Vec<&'static str> = Vec::new();
+    for key in entry.properties().flat_map(Property::source_keys).filter(|_| any) {
+        if !keys.contains(&key) {
+            keys.push(key);
+        }
+    }
+    keys
+}
+
+/// E0704: groove lines of the ends. By default cable i ends on i·q and i·q + k, k the line next to where it lands, and q = k.
+pub(super) fn place_lines(spec: &Spec, built: &mut Built, diagnostics: &mut Diagnostics) {
+    let apart = lines_apart(built);
+    let mut taken: Vec<i32> = Vec::new();
+    for (index, member) in spec.design.cables.iter().enumerate() {
+        let first = i32::try_from(index).unwrap_or(i32::MAX).saturating_mul(apart);
+        let usual = [first, first.saturating_add(apart)];
+        let lines = match &member.value.lines {
+            None => usual,
+            Some(typed) => {
+                let whole: Vec<i32> = typed.value.iter().filter(|x| x.fract() == 0.0).map(|x| *x as i32).collect();
+                match whole.as_slice() {
+                    [one, other] if whole.len() == typed.value.len() => [*one, *other],
+                    _ => {
+                        diagnostics.push(
+                            Diagnostic::error("E0704", typed.span, "a cable has two ends, each on a groove line")
+                                .label("not two whole numbers")
+                                .help(format!("for this cable: `lines = [{}, {}]`", usual[0], usual[1])),
+                        );
+                        usual
+                    }
+                }
+            }
+        };
+        let at = member.value.lines.as_ref().map_or(member.name.span, |l| l.span);
+        if taken.contains(&lines[0]) {
+            diagnostics.push(
+                Diagnostic::error("E0704", at, format!("line {} is taken by another cable", lines[0]))
+                    .label("the same first line")
+                    .help(format!("cables lie side by side: `lines = [{}, {}]`", usual[0], usual[1])),
+            );
+        }
+        taken.push(lines[0]);
+        if let Some(cable) = built.cables.get_mut(index) {
+            cable.lines = lines;
+        }
+    }
+}
+
+/// How many lines after its first end a cable comes back.
+fn lines_apart(built: &Built) -> i32 {
+    let turns = i32::try_from(built.extra_turns).unwrap_or(i32::MAX).saturating_add(1);
+    let mut layout = built.layout();
+    layout.cables = vec![[0, turns]];
+    match Drive::new(layout) {
+        Err(GeometryError::Lines { nearest, .. }) => i32::try_from(nearest).unwrap_or(turns),
+        _ => turns,
+    }
+}

@@ -1,0 +1,36 @@
+//! The long story behind every code of this family.
+
+use forcewright_base::diagnostics::Explanation;
+
+const fn code(code: &'static str, title: &'static str, text: &'static str) -> Explanation {
+    Explanation { code, title, text }
+}
+
+/// Checks `CAPS…`, errors of the design `E07…`, warnings `W07…`.
+pub(crate) const CODES: &[Explanation] = &[
+    code("CAPS001", "cables hold the torque", "The torque at which the cables slip over the whole input drum, against `requirements.torque`. Slip zones grow from both spans; where they meet, the ratio of the tensions is exp(μΘ) and nothing more is held (Longval & Gosselin, eq. 7, with both sides compatible: docs/theory/capstan.md). It is exactly in proportion to the preload. Cables that are fastened to the input drum do not slip as a whole; their slack side becomes loose instead."),
+    code("CAPS002", "stiffness", "Tangent stiffness dτ/dφ at the output under `requirements.torque`, input held, loaded from rest. Slip makes it smaller than that of the free spans, which no friction and no preload can exceed: K ≤ Σ AE/L_f. More preload, more friction, shorter spans, more cables help, in this order of effort."),
+    code("CAPS003", "lost motion", "After the required torque one way and the other, the output rests at two places at zero torque; their distance is the lost motion. For small torques it is (r₁ + r₂)q²/(2μ AE T_p) along the cable, q half the force: it falls with preload, friction and stiffness. The paper's model has no unloading."),
+    code("CAPS004", "limit on a metric", "A metric against `requirements.limits`. A metric that has no value is not assessed; the check says what is missing."),
+    code("CAPS005", "strength of the cables", "Breaking force over the largest tension under the required torque. A steel cable on a drum keeps only part of its strength (Carl Stahl Sava's table, by D/d); that is taken off. With `requirements.safety_factor` it is required; without, it is held against 1, where the cable breaks. Practice asks for 3 to 8, more where people depend on it."),
+    code("CAPS006", "drum over cable diameter", "A cable that is bent sharply tires early: the ratio of the smaller drum's diameter, to the middle of the cable, to that of the cable, against the least ratio of its construction. For steel 7×19 that is 18, for 7×7 28, for braided fibre 8 (docs/reference/cables.md)."),
+    code("CAPS007", "slack side stays taut", "The smallest tension under the required torque. A cable without tension leaves its groove."),
+    code("CAPS008", "slip ends before the terminations", "At the end of the travel the wrap before a termination is shortest, `output_anchor_wrap`. If slip reaches the termination there, the drive is stiffer than elsewhere, and the anchor feels changes of the tension."),
+    code("CAPS009", "fleet angle", "The angle between a span and its groove. It is zero where (1 + R) inv γ = kπ, with the second group of grooves turned by their own phase, or with the right ratio of radii; otherwise the cable climbs one flank. Against 1.5°, makers' rule for smooth running."),
+    code("CAPS010", "turns do not touch", "The smallest gap between the surfaces of neighbouring turns, of one cable or of two, on both drums and between passing spans, over the whole travel."),
+    code("CAPS011", "grooves do not run into each other", "The axial distance of different grooves against the width of a groove at the surface. A second group with a phase of its own cuts between the lines of the first; where both are on the same stretch of the drum, they need room."),
+    code("CAPS012", "radius of the seat", "A seat narrower than the cable pinches it, one that is too wide flattens it: 0.53 of the diameter is usual, 0.56 the most."),
+    code("CAPS013", "drums clear each other", "The gap between the cables on both drums on the line of centres."),
+    code("E0701", "no such drive", "The drums overlap, or a number of the geometry is out of its range. The centre distance must be larger than both radii to the middle of the cable together."),
+    code("E0702", "the section of the grooves", "`profile = \"round\"` needs `seat_angle` (or, with `pressure = \"table\"`, a `pressure_table` of ascending angles from the bottom), `\"v\"` needs `angle`, `\"undercut\"` needs `seat_angle` and `undercut`, `\"flat\"` nothing. Keys of another section are refused."),
+    code("E0703", "a cable that is not complete", "A cable needs a diameter and an axial stiffness: from the catalogue, `use = \"steel 7x19 1.5 mm\"`, or typed. The catalogue leaves out what no source gives: the stiffness of braids must be measured. All cables of a drive have one diameter, as their grooves have."),
+    code("E0704", "groove lines", "`lines` are the groove lines of a cable's two ends on the output, counted from 0. A cable with n extra turns comes back n + 1 lines further (one or more besides where the spans are long). No two cables begin on the same line."),
+    code("E0705", "the paper's model and unequal cables", "The model of Longval & Gosselin gives both sides the same change of tension; with cables of different preload or stiffness that says nothing about how they share the torque."),
+    code("E0706", "preload", "Bedding in, creep and a change of the temperature leave no preload, or what they leave is not known: a change of temperature needs the expansion of drums and frame and that of the cables."),
+    code("W0701", "a groove with much friction", "A factor near π/2 needs a full half circle under uniform pressure. Seats of 120 to 150° that are worn in give 1.17 to 1.36."),
+    code("W0702", "slip reaches a termination", "The cable slips over the whole of a wrap on the output drum, up to its anchor."),
+    code("W0703", "backdriving is not assessed", "The torque that turns the output with the input free comes from the bearings under the load of the cables and from bending the cables. Give `design.bearings` and `bending_loss`: nothing is guessed."),
+    code("W0704", "the cable lands beside its groove", "More than a quarter of a pitch. Another centre distance, a phase of the second group, or other radii bring it in line."),
+    code("W0705", "helices and ratio do not fit", "With as many helices as the ratio of the radii, to the nearest whole number, neighbouring lines on the output are about as far apart as on the input."),
+    code("W0706", "a loose cable", "The slack side carries nothing: the cable leaves its groove, and the taut side works alone."),
+];
