@@ -1,6 +1,7 @@
 """Reads the files of sample parts with tools that know nothing of this project.
 
-Usage: parts.py JOB.json, with {"folder", "without_packages": reason or null}; the folder holds samples.json and a file per format.
+Usage: parts.py JOB.json, with {"folder", "without_packages": reason or null}; the folder holds
+samples.json, drums.json, and a file per format.
 """
 
 import cmath
@@ -167,15 +168,12 @@ def check_dxf(sample, folder, reason):
     fail_on(found)
 
 
-def check_mesh(sample, folder, extension, reason):
-    if reason:
-        raise NotRun(reason)
-    import numpy
+def loaded_mesh(sample, folder, extension, found):
+    """A mesh that must be whole, in one piece, and of the right genus."""
     import trimesh
 
     scene = trimesh.load_scene(folder / f"{sample['name']}.{extension}")
     mesh = scene.to_mesh()
-    found = Findings()
     if extension == "3mf":
         found.need(scene.units in ("mm", "millimeter"), f"units {scene.units}")
     found.need(mesh.is_watertight, "not watertight")
@@ -183,12 +181,68 @@ def check_mesh(sample, folder, extension, reason):
     found.need(mesh.area_faces.min() > 0, "a triangle without area")
     parts = trimesh.graph.connected_components(mesh.face_adjacency, engine="networkx")
     found.need(len(parts) == 1, f"{len(parts)} parts")
+    return mesh
+
+
+def check_mesh(sample, folder, extension, reason):
+    if reason:
+        raise NotRun(reason)
+    import numpy
+
+    found = Findings()
+    mesh = loaded_mesh(sample, folder, extension, found)
     holes = sample["cutouts"] + len(sample["holes"])
     found.need(mesh.euler_number == 2 - 2 * holes, f"Euler number {mesh.euler_number} with {holes} holes")
     found.need(numpy.allclose(mesh.bounds[:, 2], [0, sample["depth_mm"]], rtol=1e-7), f"between z = {mesh.bounds[:, 2]}")
     # Corners are rounded to single precision: 4·10⁻⁶ mm at 100 mm.
     strip = (sample["facet_error_mm"] + 1e-5) * sample["boundary_mm"]
     found.near("volume", float(mesh.volume), sample["area_mm2"] * sample["depth_mm"], strip * sample["depth_mm"])
+    fail_on(found)
+
+
+def check_drum_mesh(drum, folder, extension, reason):
+    if reason:
+        raise NotRun(reason)
+    import numpy
+
+    found = Findings()
+    mesh = loaded_mesh(drum, folder, extension, found)
+    found.need(mesh.euler_number == (0 if drum["has_bore"] else 2), f"Euler number {mesh.euler_number}")
+    found.need(numpy.allclose(mesh.bounds[:, 2], [0, drum["length_mm"]], rtol=1e-7), f"between z = {mesh.bounds[:, 2]}")
+    reach = numpy.linalg.norm(mesh.vertices[:, :2], axis=1).max()
+    found.near("radius", float(reach), drum["radius_mm"], 1e-5)
+    # Facets lie within the chord error; corners are rounded to single precision.
+    found.near("volume", float(mesh.volume), drum["volume_mm3"], (drum["facet_error_mm"] + 1e-5) * float(mesh.area))
+    fail_on(found)
+
+
+def check_drum_dxf(drum, folder, reason):
+    if reason:
+        raise NotRun(reason)
+    import ezdxf
+
+    document = ezdxf.readfile(folder / f"{drum['name']}.dxf")
+    found = Findings()
+    audit = document.audit()
+    found += [f"audit: {entry.message}" for entry in [*audit.errors, *audit.fixes]]
+    on = {layer: [e for e in document.modelspace() if e.dxf.layer == layer] for layer in ("OUTLINE", "CENTRE", "NOTES")}
+    found.need(sum(map(len, on.values())) == len(document.modelspace()), "entities on other layers")
+    found.need("CENTRE" in document.layers, "no layer CENTRE")
+    found.need([e.dxftype() for e in on["OUTLINE"] + on["CENTRE"]] == ["LWPOLYLINE", "LINE"], "not one outline and one centre line")
+    area = area_of_bulges(list(on["OUTLINE"][0].get_points("xyb")))
+    found.near("area of the half section", area, drum["half_section_mm2"], 1e-9 * drum["half_section_mm2"])
+    fail_on(found)
+
+
+def check_drum_svg(drum, folder):
+    root = xml.etree.ElementTree.parse(folder / f"{drum['name']}.svg").getroot()
+    groups = {group.get("id"): group for group in root.iter(SVG + "g")}
+    points, _ = points_of_path(groups["outline"][0].get("d"))
+    found = Findings()
+    found.near("area of the half section", area_of(points), drum["half_section_mm2"], 1e-5 * drum["half_section_mm2"])
+    found.near("length", max(p.real for p in points) - min(p.real for p in points), drum["length_mm"], 1e-9)
+    ends = [float(groups["centre"][0].get(name)) for name in ("x1", "y1", "x2", "y2")]
+    found.need(ends[:2] == [0, 0] and ends[3] == 0 and abs(ends[2] - drum["length_mm"]) < 1e-9, f"centre line {ends}")
     fail_on(found)
 
 
@@ -217,6 +271,13 @@ def main():
         for extension in ("stl", "3mf"):
             check(f"{name}.{extension} by trimesh", lambda: check_mesh(sample, folder, extension, reason))
         check(f"{name}.3mf as a package", lambda: check_package(sample, folder))
+    for drum in json.loads((folder / "drums.json").read_text("utf-8")):
+        name = drum["name"]
+        check(f"{name}.svg", lambda: check_drum_svg(drum, folder))
+        check(f"{name}.dxf by ezdxf", lambda: check_drum_dxf(drum, folder, reason))
+        for extension in ("stl", "3mf"):
+            check(f"{name}.{extension} by trimesh", lambda: check_drum_mesh(drum, folder, extension, reason))
+        check(f"{name}.3mf as a package", lambda: check_package(drum, folder))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ mod page;
 
 use forcewright_base::diagnostics::Explanation;
 use forcewright_fabricate::{Format, Options, write};
-use forcewright_model::{CheckState, NoPart, Part, PartSet};
+use forcewright_model::{Body, CheckState, NoPart, Part, PartSet, Plate, Section, Turned};
 use forcewright_report::json;
 use serde_json::{Value, json};
 
@@ -81,21 +81,66 @@ impl Exported {
     }
 }
 
+fn quantity(value: f64, unit: &str) -> Value {
+    json!({ "value": value, "unit": unit })
+}
+
 fn part(part: &Part) -> Value {
-    let bounds = part.outline.bounds();
-    let quantity = |value: f64, unit: &str| json!({ "value": value, "unit": unit });
+    match &part.body {
+        Body::Plate(body) => plate(part, body),
+        Body::Turned(body) => turned(part, body),
+    }
+}
+
+fn plate(part: &Part, plate: &Plate) -> Value {
+    let bounds = plate.outline.bounds();
     json!({
         "name": part.name,
         "material": part.material,
-        "depth": quantity(part.depth_m, "m"),
+        "depth": quantity(plate.depth_m, "m"),
         "width": quantity(bounds.max_m[0] - bounds.min_m[0], "m"),
         "height": quantity(bounds.max_m[1] - bounds.min_m[1], "m"),
-        "area": quantity(part.area_m2(), "m^2"),
-        "cut_length": quantity(part.cut_length_m(), "m"),
+        "area": quantity(plate.area_m2(), "m^2"),
+        "cut_length": quantity(plate.cut_length_m(), "m"),
         "mass": part.mass_kg().map(|kg| quantity(kg, "kg")),
-        "fillets": part.fillets.map(|f| json!({ "count": f.count, "radius": f.radius_m.map(|r| quantity(r, "m")) })),
-        "volume": quantity(part.area_m2() * part.depth_m, "m^3"),
-        "holes": part.holes.len(),
+        "fillets": plate.fillets.map(|f| json!({ "count": f.count, "radius": f.radius_m.map(|r| quantity(r, "m")) })),
+        "volume": quantity(part.volume_m3(), "m^3"),
+        "holes": plate.holes.len(),
+        "notes": part.notes,
+    })
+}
+
+fn turned(part: &Part, turned: &Turned) -> Value {
+    let section = |section: &Section| match section {
+        Section::Plain { length_m, radius_m } => json!({ "length": quantity(*length_m, "m"), "radius": quantity(*radius_m, "m") }),
+        Section::Grooved(grooved) => json!({
+            "length": quantity(grooved.length_m, "m"),
+            "radius": quantity(section.radii_m()[1], "m"),
+            "bottom_radius": quantity(section.radii_m()[0], "m"),
+            "lead": quantity(grooved.lead_m, "m"),
+            "starts": grooved.starts,
+            "phase": quantity(grooved.phase_rad, "rad"),
+        }),
+    };
+    let drillings = turned.drillings.iter().map(|drilling| {
+        json!({
+            "z": quantity(drilling.z_m, "m"),
+            "angle": quantity(drilling.angle_rad, "rad"),
+            "diameter": quantity(drilling.diameter_m, "m"),
+            "depth": quantity(drilling.depth_m, "m"),
+            "purpose": drilling.purpose,
+        })
+    });
+    json!({
+        "name": part.name,
+        "material": part.material,
+        "length": quantity(turned.length_m(), "m"),
+        "diameter": quantity(2.0 * turned.largest_radius_m(), "m"),
+        "bore": quantity(turned.bore_diameter_m, "m"),
+        "sections": turned.sections.iter().map(section).collect::<Vec<_>>(),
+        "drillings": drillings.collect::<Vec<_>>(),
+        "mass": part.mass_kg().map(|kg| quantity(kg, "kg")),
+        "volume": quantity(part.volume_m3(), "m^3"),
         "notes": part.notes,
     })
 }

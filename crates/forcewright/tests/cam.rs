@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use forcewright::fabricate::{Format, Options};
+use forcewright::model::Part;
 use forcewright::{Choices, DiskFiles, Loaded, SynthesisTask, ToleranceChoices};
 
 fn text(name: &str) -> &'static str {
@@ -106,16 +107,16 @@ fn designs_from_requirements_meet_them_and_what_blocks_is_named() {
 fn parts_have_the_size_of_the_mechanism() {
     let loaded = load("no-undercut", text("no-undercut"), &[]);
     let exported = loaded.export("cam", &[Format::Dxf], &Options::default()).unwrap();
-    let part = |name: &str| exported.set.parts.iter().find(|p| p.name == name).unwrap();
-    let brace = part("brace");
+    let plate = |name: &str| exported.set.parts.iter().find(|p| p.name == name).and_then(Part::plate).unwrap();
+    let brace = plate("brace");
     assert!((brace.holes[1].centre_m[0] - brace.holes[0].centre_m[0] - 0.2).abs() < 1e-15);
-    let roller = part("roller");
+    let roller = plate("roller");
     assert!((roller.outline.area_m2() - std::f64::consts::PI * 0.016 * 0.016).abs() < 1e-15);
     // The plate is as wide at its top as the rollers leave: their centres less their radius along the normal.
     let inspection = exported.set.sheets.iter().find(|s| s.name == "inspection").unwrap();
     let top = inspection.rows.iter().rfind(|r| r[0] == "right").unwrap();
     let [x, y]: [f64; 2] = [top[2].parse().unwrap(), top[3].parse().unwrap()];
-    let bounds = part("cam").outline.bounds();
+    let bounds = plate("cam").outline.bounds();
     assert!((1e3 * bounds.max_m[0] - x).abs() < 1e-3 && (1e3 * bounds.max_m[1] - y).abs() < 1e-3, "{bounds:?} {x} {y}");
     assert!(
         exported.files.iter().any(|(name, _)| name == "cam-inspection.csv")

@@ -107,7 +107,7 @@ fn the_drawing_has_the_thickness_that_gives_the_force() {
     assert_eq!((exported.set.parts.len(), exported.files.len()), (1, 1));
     let profiles = polylines(&exported.files[0].1);
     // Ground and block apart from windows: four beams a half close windows between them.
-    assert_eq!(profiles.len(), 1 + exported.set.parts[0].cutouts.len());
+    assert_eq!(profiles.len(), 1 + exported.set.parts[0].plate().expect("a plate").cutouts.len());
     let mut measured = Vec::new();
     for axis in table3_axes() {
         for section in thickness_along(&profiles, axis.as_ref(), &[0.2, 0.35, 0.5, 0.65, 0.8]) {
@@ -155,7 +155,7 @@ fn every_format_is_written_and_the_same_each_time() {
     assert_eq!(names, ["part.dxf", "part.svg", "part.step", "part.stl", "part.3mf", "part.inp"]);
     let again = export("compliant/lan-sub-cfm", &["parts.hole=2 mm", "parts.pad=[\"6 mm\", \"6 mm\"]"], &Format::ALL).expect("a part");
     assert_eq!(all.files, again.files);
-    assert_eq!(all.set.parts[0].holes.len(), 3, "two clamps, one block");
+    assert_eq!(all.set.parts[0].plate().expect("a plate").holes.len(), 3, "two clamps, one block");
 }
 
 /// What a program of finite elements is told: the pads of both halves held, the block moved, the material of the file.
@@ -242,12 +242,13 @@ fn every_example_is_a_part_or_says_why_not() {
 fn halves_that_meet_on_the_mirror_line_are_one_part() {
     let exported = export("compliant/williams-toggle", &[], &[Format::Dxf]).expect("a part");
     let part = &exported.set.parts[0];
+    let plate = part.plate().expect("a plate");
     let inch = 0.0254;
     let (w, length) = (0.243 * inch, maths::hypot(12.943, 0.386) * inch);
     let fillets = 2.0 * 2.0 * (1.0 - std::f64::consts::FRAC_PI_4) * 0.25 * w * w;
     let area = 2.0 * (length * w + 36.0 * w * w) + fillets;
-    assert!((part.area_m2() - area).abs() < 0.1 * w * w, "{} {area}", part.area_m2());
-    assert!((part.size_m()[0] - 2.0 * (12.943 * inch + 6.0 * w)).abs() < 1e-9);
+    assert!((plate.area_m2() - area).abs() < 0.1 * w * w, "{} {area}", plate.area_m2());
+    assert!((plate.size_m()[0] - 2.0 * (12.943 * inch + 6.0 * w)).abs() < 1e-9);
     assert!(part.notes.iter().any(|n| n.contains("`apex`")), "{:?}", part.notes);
 }
 
@@ -258,11 +259,12 @@ fn the_page_tells_what_is_cut() {
     let names: Vec<&str> = exported.files.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["part.dxf", "part.svg"]);
     let part = &exported.set.parts[0];
+    let plate = part.plate().expect("a plate");
     let length: f64 = polylines(&exported.files[0].1).iter().map(Profile::length_m).sum();
-    assert!((part.cut_length_m() / length - 1.0).abs() < 1e-4, "{length}");
+    assert!((plate.cut_length_m() / length - 1.0).abs() < 1e-4, "{length}");
     // POM-C has 1410 kg/m³.
-    assert!((part.mass_kg().expect("a density") / (part.area_m2() * 10e-3 * 1410.0) - 1.0).abs() < 1e-12);
-    let fillets = part.fillets.expect("a cutter of 1 mm");
+    assert!((part.mass_kg().expect("a density") / (plate.area_m2() * 10e-3 * 1410.0) - 1.0).abs() < 1e-12);
+    let fillets = plate.fillets.expect("a cutter of 1 mm");
     assert!(fillets.radius_m.iter().all(|r| (r - 0.5e-3).abs() < 1e-9), "{fillets:?}");
     // Names may be broken at their dots.
     let page = exported.page("lan-table3.toml", None, "forcewright export lan-table3.toml").replace("<wbr />", "");

@@ -300,7 +300,7 @@ fn the_way_from_a_requirement_to_a_part() {
     let [stress, inner] = ["stress_max", "stress_inner_face"].map(|name| outcome.metric(name).expect("whole").value);
     assert!((stress / 40.7e6 - 1.0).abs() < 0.01 && (inner / 42e6 - 1.0).abs() < 0.01, "{stress}, {inner}");
     let part = loaded.export("pad", &[Format::Dxf, Format::Step], &Options::default()).map_err(|none| none.message).expect("a part");
-    assert!(part.can_be_made() && part.set.parts[0].holes.len() == 3 && part.files.len() == 2);
+    assert!(part.can_be_made() && part.set.parts[0].plate().is_some_and(|p| p.holes.len() == 3) && part.files.len() == 2);
 }
 
 /// A sheet that is as thick as it may be is not strong enough alone, but several are: in rows on one block, where the room is there.
@@ -398,7 +398,7 @@ fn nothing_runs_into_a_pad() {
 /// The box of the part as it is drawn, at rest: width and height, m. `None` if it is no part.
 fn part_m(design: &Designed) -> Option<[f64; 2]> {
     let part = loaded(design).export("part", &[Format::Svg], &Options::default()).ok()?;
-    let all = part.set.parts.iter().map(|p| p.outline.bounds()).reduce(Bounds::union)?;
+    let all = part.set.parts.iter().filter_map(|p| Some(p.plate()?.outline.bounds())).reduce(Bounds::union)?;
     Some([0, 1].map(|axis| all.max_m[axis] - all.min_m[axis]))
 }
 

@@ -9,6 +9,7 @@ mod part;
 mod report;
 mod scene;
 mod study;
+mod turned;
 
 pub use check::{Check, CheckState, Sense};
 pub use curve::{Axis, Branch, Curve};
@@ -16,7 +17,8 @@ pub use figure::{
     BarRow, Bars, Figure, FigureContent, Film, Frame, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan,
 };
 pub use outcome::{Counter, Metric, Outcome, Status, StatusKind, Warning};
-pub use part::{Fillets, Grip, Hole, NoPart, Part, PartMark, PartSet, Sheet, Trial};
+pub use part::{Body, Fillets, Grip, Hole, NoPart, Part, PartMark, PartSet, Plate, Sheet, Trial};
 pub use report::{Citation, ParameterRow, Report, Statement};
 pub use scene::{ColourScale, Item, Look, Role, Scene, SupportKind};
 pub use study::{Study, StudyColumn, StudyTable};
+pub use turned::{Drilling, Groove, GrooveError, Grooved, Section, Turned, TurnedError};

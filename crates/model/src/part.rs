@@ -3,9 +3,9 @@
 use forcewright_base::units::Unit;
 use forcewright_curves::Profile;
 
-use crate::Check;
+use crate::{Check, Turned};
 
-/// A plate of constant thickness, cut or printed in one piece.
+/// A piece that is made: what it is called, what it is made of, and its body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Short name, fit for a file name: `monolith`.
@@ -16,6 +16,24 @@ pub struct Part {
     pub material: Option<String>,
     /// Density of that, kg/m³; `None` if it is not known.
     pub density_kg_per_m3: Option<f64>,
+    /// What the maker must know, a sentence each.
+    pub notes: Vec<String>,
+    /// Its shape.
+    pub body: Body,
+}
+
+/// The shape of a part, after the way it is made.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Body {
+    /// Cut or printed in one piece, of constant thickness.
+    Plate(Plate),
+    /// Made on a lathe.
+    Turned(Turned),
+}
+
+/// A plate of constant thickness, cut or printed in one piece.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plate {
     /// Its extent out of the plane, m.
     pub depth_m: f64,
     /// The outer boundary, counterclockwise.
@@ -26,8 +44,6 @@ pub struct Part {
     pub holes: Vec<Hole>,
     /// Arcs in re-entrant corners; `None` if it has none.
     pub fillets: Option<Fillets>,
-    /// What the maker must know, a sentence each.
-    pub notes: Vec<String>,
     /// How it is held and moved, for finite elements; else what keeps that from being said.
     pub trial: Result<Trial, String>,
 }
@@ -62,15 +78,46 @@ impl Grip {
 }
 
 impl Part {
+    /// Its plate, if it is one.
+    pub fn plate(&self) -> Option<&Plate> {
+        match &self.body {
+            Body::Plate(plate) => Some(plate),
+            Body::Turned(_) => None,
+        }
+    }
+
+    /// Its turned body, if it is one.
+    pub fn turned(&self) -> Option<&Turned> {
+        match &self.body {
+            Body::Turned(turned) => Some(turned),
+            Body::Plate(_) => None,
+        }
+    }
+
+    /// Its volume, m³: exact, but for the drillings of a turned part, which are not taken off.
+    pub fn volume_m3(&self) -> f64 {
+        match &self.body {
+            Body::Plate(plate) => plate.area_m2() * plate.depth_m,
+            Body::Turned(turned) => turned.volume_m3(),
+        }
+    }
+
+    /// Its mass, kg, if its density is known.
+    pub fn mass_kg(&self) -> Option<f64> {
+        let density_kg_per_m3 = self.density_kg_per_m3?;
+        Some(match &self.body {
+            // In this order, to which rounding clings.
+            Body::Plate(plate) => density_kg_per_m3 * plate.area_m2() * plate.depth_m,
+            Body::Turned(turned) => density_kg_per_m3 * turned.volume_m3(),
+        })
+    }
+}
+
+impl Plate {
     /// Area of the plate in its plane, m².
     pub fn area_m2(&self) -> f64 {
         let holes = self.holes.iter().map(|h| 0.25 * std::f64::consts::PI * h.diameter_m * h.diameter_m);
         self.outline.area_m2() + self.cutouts.iter().map(Profile::area_m2).sum::<f64>() - holes.sum::<f64>()
-    }
-
-    /// Mass of the plate, kg, if its density is known.
-    pub fn mass_kg(&self) -> Option<f64> {
-        Some(self.density_kg_per_m3? * self.area_m2() * self.depth_m)
     }
 
     /// Length of all cuts, m: the outline, what is cut out, the holes.
@@ -129,7 +176,7 @@ impl Sheet {
     }
 }
 
-/// The plates of a mechanism.
+/// The parts of a mechanism.
 #[derive(Clone, Debug)]
 pub struct PartSet {
     /// One of each kind.
@@ -144,7 +191,7 @@ pub struct PartSet {
     pub checks: Vec<Check>,
 }
 
-/// Why a mechanism has no plates.
+/// Why a mechanism has no parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoPart {
     /// Stable code; `explain` knows it.

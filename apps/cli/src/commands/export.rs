@@ -8,6 +8,7 @@ use clap::ArgMatches;
 use forcewright::base::text::visible;
 use forcewright::base::units::{Dimension, Quantity, format_number};
 use forcewright::fabricate::{Format, Options};
+use forcewright::model::{Body, Section};
 use forcewright::{Choices, DiskFiles, Exported, Loaded};
 
 use super::solve::{repeat_command, requirement_table, show};
@@ -73,19 +74,35 @@ fn summary(exported: &Exported) -> String {
     let mut text = String::new();
     let millimetres = |m: f64| format_number(1e3 * m, 5);
     for part in &exported.set.parts {
-        let [width, height] = part.size_m().map(millimetres);
         let material = part.material.as_ref().map_or_else(String::new, |m| format!(", {m}"));
-        let _ = writeln!(text, "{}: {width} × {height} × {} mm{material}", part.name, millimetres(part.depth_m));
         let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
         let mass = part.mass_kg().map_or_else(String::new, |kg| format!(", {} g", format_number(1e3 * kg, 3)));
-        let _ = writeln!(
-            text,
-            "  area {} mm²{mass}, cut length {} mm, {}, {}",
-            format_number(1e6 * part.area_m2(), 6),
-            millimetres(part.cut_length_m()),
-            count(part.cutouts.len(), "window"),
-            count(part.holes.len(), "hole")
-        );
+        match &part.body {
+            Body::Plate(plate) => {
+                let [width, height] = plate.size_m().map(millimetres);
+                let _ = writeln!(text, "{}: {width} × {height} × {} mm{material}", part.name, millimetres(plate.depth_m));
+                let _ = writeln!(
+                    text,
+                    "  area {} mm²{mass}, cut length {} mm, {}, {}",
+                    format_number(1e6 * plate.area_m2(), 6),
+                    millimetres(plate.cut_length_m()),
+                    count(plate.cutouts.len(), "window"),
+                    count(plate.holes.len(), "hole")
+                );
+            }
+            Body::Turned(turned) => {
+                let diameter = millimetres(2.0 * turned.largest_radius_m());
+                let _ = writeln!(text, "{}: diameter {diameter} mm, {} mm long{material}", part.name, millimetres(turned.length_m()));
+                let grooved = turned.sections.iter().filter_map(Section::grooved).count();
+                let _ = writeln!(
+                    text,
+                    "  volume {} cm³{mass}, {} grooved, {} not cut into the solid",
+                    format_number(1e6 * turned.volume_m3(), 6),
+                    count(grooved, "section"),
+                    count(turned.drillings.len(), "drilling")
+                );
+            }
+        }
         for note in &part.notes {
             let _ = writeln!(text, "  {note}");
         }

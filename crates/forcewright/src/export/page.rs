@@ -1,7 +1,7 @@
 //! The parts of a design as a page for people, and as a figure of its report.
 
 use forcewright_base::units::{format_number, format_si};
-use forcewright_model::{Check, CheckState, Figure, FigureContent, Part, PartSet, Sense};
+use forcewright_model::{Body, Check, CheckState, Figure, FigureContent, Part, PartSet, Plate, Section, Sense, Turned};
 use forcewright_report::study::{StudyColumn, StudyPage, StudyPart, StudySection, page};
 
 use super::Exported;
@@ -11,11 +11,16 @@ use crate::{Loaded, VERSION};
 fn figure(set: &PartSet) -> Figure {
     let several = set.parts.len() > 1;
     let facts: Vec<String> = set.parts.iter().map(|part| in_words(part, several, set)).collect();
-    let (title, cut) = if several { ("The parts as they are cut", "They are cut") } else { ("The part as it is cut", "It is cut") };
+    let (title, lead) = match (set.parts.iter().any(|part| part.turned().is_some()), several) {
+        (true, true) => ("The parts as they are made", "Turned parts are shown cut along their axis."),
+        (true, false) => ("The part as it is made", "It is shown cut along its axis."),
+        (false, true) => ("The parts as they are cut", "They are cut, with holes and fillets; `[parts]` says how large they are."),
+        (false, false) => ("The part as it is cut", "It is cut, with holes and fillets; `[parts]` says how large they are."),
+    };
     Figure {
         id: "part",
         title: title.to_owned(),
-        caption: format!("{cut}, with holes and fillets; `[parts]` says how large they are. {}", facts.join(" ")),
+        caption: format!("{lead} {}", facts.join(" ")),
         content: FigureContent::Part(set.clone()),
     }
 }
@@ -32,24 +37,58 @@ fn in_words(part: &Part, named: bool, set: &PartSet) -> String {
     words
 }
 
-/// Name and text of what can be measured on a plate.
+/// Name and text of what can be measured on a part.
 pub(super) fn facts(part: &Part, set: &PartSet) -> Vec<(&'static str, String)> {
-    let length = |m: f64| format_si(m, &set.display, 4);
-    let [width, height] = part.size_m().map(length);
-    let mut all = vec![
-        ("size", format!("{width} × {height}")),
-        ("thickness of the plate", length(part.depth_m)),
-        ("cut length", length(part.cut_length_m())),
-        ("area", format!("{} mm²", format_number(1e6 * part.area_m2(), 4))),
-    ];
+    let (mut all, fillets) = match &part.body {
+        Body::Plate(plate) => (plate_facts(plate, set), plate.fillets),
+        Body::Turned(turned) => (turned_facts(turned, set), None),
+    };
     if let Some(mass_kg) = part.mass_kg() {
         all.push(("mass", format!("{} g", format_number(1e3 * mass_kg, 3))));
     }
-    if let Some(fillets) = part.fillets {
+    if let Some(fillets) = fillets {
+        let length = |m: f64| format_si(m, &set.display, 4);
         let [least, most] = fillets.radius_m;
         // What differs by rounding is one radius.
         let radius = if most - least < 1e-6 * most { length(most) } else { format!("{} to {}", length(least), length(most)) };
         all.push(("fillets", format!("{} of radius {radius}", fillets.count)));
+    }
+    all
+}
+
+fn plate_facts(plate: &Plate, set: &PartSet) -> Vec<(&'static str, String)> {
+    let length = |m: f64| format_si(m, &set.display, 4);
+    let [width, height] = plate.size_m().map(length);
+    vec![
+        ("size", format!("{width} × {height}")),
+        ("thickness of the plate", length(plate.depth_m)),
+        ("cut length", length(plate.cut_length_m())),
+        ("area", format!("{} mm²", format_number(1e6 * plate.area_m2(), 4))),
+    ]
+}
+
+fn turned_facts(turned: &Turned, set: &PartSet) -> Vec<(&'static str, String)> {
+    let length = |m: f64| format_si(m, &set.display, 4);
+    let mut all = vec![
+        ("largest diameter", length(2.0 * turned.largest_radius_m())),
+        ("length", length(turned.length_m())),
+        ("volume", format!("{} cm³", format_number(1e6 * turned.volume_m3(), 4))),
+    ];
+    if turned.bore_diameter_m > 0.0 {
+        all.push(("bore", length(turned.bore_diameter_m)));
+    }
+    for grooved in turned.sections.iter().filter_map(Section::grooved) {
+        let hand = if grooved.lead_m > 0.0 { "right" } else { "left" };
+        let lead = length(grooved.lead_m.abs());
+        let grooves = if grooved.starts == 1 { "1 groove".to_owned() } else { format!("{} grooves side by side", grooved.starts) };
+        all.push(("grooved section", format!("{grooves}, {hand}-handed, lead {lead}, over {}", length(grooved.length_m))));
+    }
+    for drilling in &turned.drillings {
+        let [diameter, z] = [drilling.diameter_m, drilling.z_m].map(length);
+        let angle = format_number(drilling.angle_rad.to_degrees(), 4);
+        let text =
+            format!("{}: diameter {diameter} at z = {z}, {angle}°, {} deep; not in the solid", drilling.purpose, length(drilling.depth_m));
+        all.push(("drilling", text));
     }
     all
 }
@@ -78,8 +117,10 @@ impl Exported {
             for (what, text) in facts(part, set) {
                 row(what, text);
             }
-            row("windows", part.cutouts.len().to_string());
-            row("holes", part.holes.len().to_string());
+            if let Some(plate) = part.plate() {
+                row("windows", plate.cutouts.len().to_string());
+                row("holes", plate.holes.len().to_string());
+            }
             part.notes.iter().for_each(|note| row("note", note.clone()));
         }
         let measures = [("Part", StudyColumn::Code), ("What", StudyColumn::Text), ("Value", StudyColumn::Text)];

@@ -9,7 +9,7 @@ use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::judge::Comparison;
 use forcewright_curves::fit::{Arcs, Oriented, arcs};
 use forcewright_curves::{Profile, Segment};
-use forcewright_model::{Check, Hole, NoPart, Part, PartSet, Sense, Sheet};
+use forcewright_model::{Body, Check, Hole, NoPart, Part, PartSet, Plate, Sense, Sheet};
 
 use crate::analysis::Behaviour;
 use crate::cut::SIDES;
@@ -192,14 +192,16 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
             name: "cam".to_owned(),
             title: "Cam plate".to_owned(),
             material: material(0),
-            depth_m: thickness_m,
             density_kg_per_m3: density(0),
-            outline: plate(making, &profiles),
-            cutouts: Vec::new(),
-            fillets: None,
-            trial: Err(RIGID.to_owned()),
-            holes: mounting_holes(making, &profiles),
             notes,
+            body: Body::Plate(Plate {
+                depth_m: thickness_m,
+                outline: plate(making, &profiles),
+                cutouts: Vec::new(),
+                fillets: None,
+                trial: Err(RIGID.to_owned()),
+                holes: mounting_holes(making, &profiles),
+            }),
         });
     } else {
         for (drawn, name) in profiles.iter().zip(["cam-right", "cam-left"]) {
@@ -207,14 +209,16 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
                 name: name.to_owned(),
                 title: format!("Cam plate, {}", ["right", "left"][drawn.side]),
                 material: material(0),
-                depth_m: thickness_m,
                 density_kg_per_m3: density(0),
-                outline: outer_plate(making, drawn),
-                cutouts: Vec::new(),
-                fillets: None,
-                trial: Err(RIGID.to_owned()),
-                holes: Vec::new(),
                 notes: notes.clone(),
+                body: Body::Plate(Plate {
+                    depth_m: thickness_m,
+                    outline: outer_plate(making, drawn),
+                    cutouts: Vec::new(),
+                    fillets: None,
+                    trial: Err(RIGID.to_owned()),
+                    holes: Vec::new(),
+                }),
             });
         }
     }
@@ -433,14 +437,16 @@ pub(crate) fn roller([radius_m, pin_m, depth_m]: [f64; 3], material: Option<Stri
         name: "roller".to_owned(),
         title: "Roller (2)".to_owned(),
         material,
-        depth_m,
         density_kg_per_m3,
-        outline: Profile::circle([0.0; 2], radius_m),
-        cutouts: Vec::new(),
-        fillets: None,
-        trial: Err(RIGID.to_owned()),
-        holes: vec![Hole { centre_m: [0.0; 2], diameter_m: pin_m, purpose: "axle".to_owned() }],
         notes: vec!["A ball bearing of this outer diameter does as well.".to_owned()],
+        body: Body::Plate(Plate {
+            depth_m,
+            outline: Profile::circle([0.0; 2], radius_m),
+            cutouts: Vec::new(),
+            fillets: None,
+            trial: Err(RIGID.to_owned()),
+            holes: vec![Hole { centre_m: [0.0; 2], diameter_m: pin_m, purpose: "axle".to_owned() }],
+        }),
     }
 }
 
@@ -469,15 +475,17 @@ fn braces(design: &Design) -> Vec<Part> {
             title: title.to_owned(),
             material: None,
             density_kg_per_m3: None,
-            depth_m: making.brace_thickness_m,
-            outline,
-            cutouts: Vec::new(),
-            fillets: None,
-            trial: Err(RIGID.to_owned()),
-            holes: vec![hole(0.0, "axle of the roller"), hole(length_m, "joint of the slider")],
             notes: vec![
                 "The distance of the holes is the brace length: it moves the force little, the two of a pair should be equal.".to_owned(),
             ],
+            body: Body::Plate(Plate {
+                depth_m: making.brace_thickness_m,
+                outline,
+                cutouts: Vec::new(),
+                fillets: None,
+                trial: Err(RIGID.to_owned()),
+                holes: vec![hole(0.0, "axle of the roller"), hole(length_m, "joint of the slider")],
+            }),
         }
     };
     if same {
@@ -494,13 +502,15 @@ fn pin(design: &Design, thickness_m: f64) -> Part {
         title: "Axle (2), without what carries the springs".to_owned(),
         material: None,
         density_kg_per_m3: None,
-        depth_m: thickness_m + 2.0 * making.brace_thickness_m,
-        outline: Profile::circle([0.0; 2], 0.5 * making.pin_m),
-        cutouts: Vec::new(),
-        fillets: None,
-        trial: Err(RIGID.to_owned()),
-        holes: Vec::new(),
         notes: vec!["Longer where several springs stand side by side on it.".to_owned()],
+        body: Body::Plate(Plate {
+            depth_m: thickness_m + 2.0 * making.brace_thickness_m,
+            outline: Profile::circle([0.0; 2], 0.5 * making.pin_m),
+            cutouts: Vec::new(),
+            fillets: None,
+            trial: Err(RIGID.to_owned()),
+            holes: Vec::new(),
+        }),
     }
 }
 

@@ -10,7 +10,7 @@ use forcewright_cam::{Bank, Cam, ForceLaw, Sense, Spring, SpringLaw, SpringMass,
 use forcewright_contract::family::{Analysis, Entry, Family as _};
 use forcewright_contract::project::{Choices, Project};
 use forcewright_contract::studies::Free;
-use forcewright_model::{FigureContent, Item, Look, Role};
+use forcewright_model::{FigureContent, Item, Look, Part, Role};
 use forcewright_multibody::{Body, Contact, Follows, Force, GROUND, Grid, Kinematics, Law, Model, Motion, Path, PathPoint, Side, Stop};
 use forcewright_study::evaluator::Evaluation;
 
@@ -492,7 +492,7 @@ fn the_disc_can_be_made() {
         let mut project = Project::from_text("test.toml", &text, &Choices::default());
         let understood = Entry::<Cam>::new().understand(&mut project).expect("understood");
         let set = understood.parts().expect("parts");
-        let disc = set.parts.iter().find(|p| p.name == name).expect("a disc");
+        let disc = set.parts.iter().find(|p| p.name == name).and_then(Part::plate).expect("a disc");
         disc.outline.check(1e-9).expect("a sound outline");
         assert!(disc.outline.area_m2() > 0.0, "counterclockwise");
         for hole in &disc.cutouts {
@@ -610,8 +610,9 @@ fn tried(text: &str) -> Result<Analysis, String> {
         all.iter().map(|d| format!("{} {}", d.code, d.help.as_deref().unwrap_or_default())).collect::<Vec<_>>().join("\n")
     })?;
     for part in understood.parts().expect("parts").parts {
-        part.outline.check(1e-9).expect("a sound outline");
-        part.cutouts.iter().for_each(|c| c.check(1e-9).expect("a sound cutout"));
+        let plate = part.plate().expect("a plate");
+        plate.outline.check(1e-9).expect("a sound outline");
+        plate.cutouts.iter().for_each(|c| c.check(1e-9).expect("a sound cutout"));
     }
     Ok(understood.analyse(&mut |_| true))
 }

@@ -6,7 +6,7 @@ use forcewright_beam::{Beam, Image, Joint as BeamJoint, Rotation, Support};
 use forcewright_curves::outline::{AxisPoint, Block, Cap, HalfWidth, Joint, Network, Node, Outline, OutlineError, Region, Strip, Tag};
 use forcewright_curves::walls::{Narrow, narrowest_gap, thinnest_wall};
 use forcewright_curves::{Profile, Segment};
-use forcewright_model::{Check, CheckState, Fillets, Grip, Hole, NoPart, Part, PartMark, PartSet, Sense, Trial};
+use forcewright_model::{Body, Check, CheckState, Fillets, Grip, Hole, NoPart, Part, PartMark, PartSet, Plate, Sense, Trial};
 
 use crate::analysis::Behaviour;
 use crate::checks::rounded_down;
@@ -405,13 +405,15 @@ impl<'a> Drawing<'a> {
             title: design.title.clone(),
             material: material.map(|m| m.origin.clone()),
             density_kg_per_m3: material.and_then(|m| m.density_kg_per_m3),
-            depth_m,
-            outline: region.outer.profile.clone(),
-            cutouts: region.windows.iter().map(|w| w.profile.clone()).collect(),
-            holes: holes.iter().filter(|h| region.outer.profile.contains(h.centre_m)).cloned().collect(),
-            fillets: fillets(region),
             notes: notes.clone(),
-            trial: self.trial(&region.outer.profile),
+            body: Body::Plate(Plate {
+                depth_m,
+                outline: region.outer.profile.clone(),
+                cutouts: region.windows.iter().map(|w| w.profile.clone()).collect(),
+                holes: holes.iter().filter(|h| region.outer.profile.contains(h.centre_m)).cloned().collect(),
+                fillets: fillets(region),
+                trial: self.trial(&region.outer.profile),
+            }),
         });
         all.collect()
     }

@@ -20,18 +20,41 @@ fn main() -> io::Result<()> {
             let bytes = write(&part, format, &options).map_err(io::Error::other)?;
             fs::write(folder.join(format!("{}.{}", part.name, format.extension())), bytes)?;
         }
+        let plate = common::plate_of(&part);
         known.push(json!({
             "name": part.name,
             "title": part.title,
             "area_mm2": area_m2 * 1e6,
             "boundary_mm": boundary_m * 1e3,
-            "depth_mm": part.depth_m * 1e3,
+            "depth_mm": plate.depth_m * 1e3,
             "faces": faces,
-            "cutouts": part.cutouts.len(),
-            "holes": part.holes.iter().map(|hole| hole.diameter_m * 1e3).collect::<Vec<_>>(),
+            "cutouts": plate.cutouts.len(),
+            "holes": plate.holes.iter().map(|hole| hole.diameter_m * 1e3).collect::<Vec<_>>(),
             "arc_error_mm": options.arc_error_m * 1e3,
             "facet_error_mm": options.facet_error_m * 1e3,
         }));
     }
+    let mut drums = Vec::new();
+    for common::drums::Drum { part, volume_m3, surface_m2, faces } in common::drums::drums() {
+        for format in Format::ALL.into_iter().filter(|format| *format != Format::Inp) {
+            let bytes = write(&part, format, &options).map_err(io::Error::other)?;
+            fs::write(folder.join(format!("{}.{}", part.name, format.extension())), bytes)?;
+        }
+        let Some(turned) = part.turned() else { continue };
+        let profile = turned.half_section(0.0).map_err(io::Error::other)?;
+        drums.push(json!({
+            "name": part.name,
+            "title": part.title,
+            "volume_mm3": volume_m3 * 1e9,
+            "surface_mm2": surface_m2 * 1e6,
+            "length_mm": turned.length_m() * 1e3,
+            "radius_mm": turned.largest_radius_m() * 1e3,
+            "half_section_mm2": profile.area_m2() * 1e6,
+            "faces": faces,
+            "has_bore": turned.bore_diameter_m > 0.0,
+            "facet_error_mm": options.facet_error_m * 1e3,
+        }));
+    }
+    fs::write(folder.join("drums.json"), format!("{:#}\n", json!(drums)))?;
     fs::write(folder.join("samples.json"), format!("{:#}\n", json!(known)))
 }

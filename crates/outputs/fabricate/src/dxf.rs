@@ -12,6 +12,8 @@ use crate::text::{length, ratio, remarks};
 
 /// Layers with their colours by their number: white (black on paper), red, blue, green.
 const LAYERS: [(&str, u8); 5] = [("0", 7), ("OUTLINE", 7), ("CUTOUTS", 1), ("HOLES", 5), ("NOTES", 3)];
+/// The layer of the centre line of a turned part.
+const CENTRE: (&str, u8) = ("CENTRE", 4);
 /// Height of letters and distance of lines, mm.
 const LETTERS: f64 = 2.5;
 const LINES: f64 = 5.0;
@@ -31,7 +33,7 @@ pub(crate) fn write(part: &Part, shape: &Shape, arc_error: f64) -> String {
     let mut notes = remarks(part);
     notes.push(format!("Splines are drawn as arcs within {} mm.", length(arc_error)));
     let mut body = Dxf { out: String::new(), next: FIRST_FREE };
-    body.tables(shape.extent());
+    body.tables(shape);
     body.blocks();
     body.entities(shape, &notes, arc_error);
     body.objects();
@@ -92,17 +94,19 @@ impl Dxf {
         self.pair(0, "ENDSEC");
     }
 
-    fn tables(&mut self, extent: [Point; 2]) {
+    fn tables(&mut self, shape: &Shape) {
         self.section("CLASSES");
         self.pair(0, "ENDSEC");
         self.section("TABLES");
-        self.view_table(extent);
+        self.view_table(shape.extent());
         self.table("LTYPE", "AcDbLinetypeTableRecord", &["ByBlock", "ByLayer", "Continuous"], |dxf, _| {
             dxf.pairs(&[(70, "0"), (3, ""), (72, "65"), (73, "0"), (40, "0")]);
         });
-        self.table("LAYER", "AcDbLayerTableRecord", &LAYERS.map(|(name, _)| name), |dxf, index| {
+        let layers: Vec<(&str, u8)> = LAYERS.into_iter().chain(shape.axis.map(|_| CENTRE)).collect();
+        let names: Vec<&str> = layers.iter().map(|(name, _)| *name).collect();
+        self.table("LAYER", "AcDbLayerTableRecord", &names, |dxf, index| {
             dxf.pair(70, 0);
-            dxf.pair(62, LAYERS[index].1);
+            dxf.pair(62, layers[index].1);
             dxf.pairs(&[(6, "Continuous"), (370, "-3")]);
         });
         self.table("STYLE", "AcDbTextStyleTableRecord", &["Standard"], |dxf, _| {
@@ -194,6 +198,11 @@ impl Dxf {
             self.entity("CIRCLE", "HOLES", "AcDbCircle");
             self.point(10, &[hole.centre[0], hole.centre[1], 0.0]);
             self.pair(40, length(hole.radius));
+        }
+        if let Some([from, to]) = shape.axis {
+            self.entity("LINE", CENTRE.0, "AcDbLine");
+            self.point(10, &[from[0], from[1], 0.0]);
+            self.point(11, &[to[0], to[1], 0.0]);
         }
         let [low, _] = shape.extent();
         for (line, note) in notes.iter().enumerate() {

@@ -2,6 +2,10 @@
 
 use std::fmt;
 
+use forcewright_model::TurnedError;
+
+use crate::Format;
+
 /// Why no file was written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Error {
@@ -106,6 +110,20 @@ pub enum Problem {
         /// Why, in words that follow a colon.
         what: &'static str,
     },
+    /// The turned part is none.
+    Turned(TurnedError),
+    /// The format has no turned parts.
+    OnlyPlates {
+        /// The format.
+        format: Format,
+    },
+    /// A mesh with more corners than any program wants.
+    TooManyCorners {
+        /// About how many.
+        corners: f64,
+        /// The most that are written.
+        most: f64,
+    },
 }
 
 impl fmt::Display for Boundary {
@@ -158,6 +176,13 @@ impl fmt::Display for Problem {
             Self::Misplaced => write!(f, "lies outside the outline or inside another cutout"),
             Self::TooSmall => write!(f, "too small to be written in single precision"),
             Self::Mesh { what } => write!(f, "no mesh of finite elements: {what}"),
+            Self::Turned(error) => write!(f, "{error}"),
+            Self::OnlyPlates { format } => {
+                write!(f, "{format} is for plates only; write a turned part as STEP and let the program of finite elements mesh that")
+            }
+            Self::TooManyCorners { corners, most } => {
+                write!(f, "a mesh of {corners:.0} corners, allowed are {most:.0}; a larger facet_error_m makes fewer, STEP needs none")
+            }
         }
     }
 }

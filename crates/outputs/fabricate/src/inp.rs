@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 
 use forcewright_curves::Profile;
 use forcewright_curves::walls::thinnest_wall;
-use forcewright_model::{Part, Trial};
+use forcewright_model::{Part, Plate, Trial};
 
 use crate::elements::{self, Elements, Region};
 use crate::error::{Error, Place};
@@ -25,11 +25,11 @@ const PER_LINE: usize = 12;
 const LONGEST: usize = 120;
 
 /// The file. All in mm, N and megapascal.
-pub(crate) fn write(part: &Part, shape: &Shape, element_m: Option<f64>) -> Result<String, Error> {
-    let grips: &[forcewright_model::Grip] = part.trial.as_ref().map_or(&[], |trial| &trial.grips);
+pub(crate) fn write(part: &Part, plate: &Plate, shape: &Shape, element_m: Option<f64>) -> Result<String, Error> {
+    let grips: &[forcewright_model::Grip] = plate.trial.as_ref().map_or(&[], |trial| &trial.grips);
     let regions: Vec<Region> =
         grips.iter().map(|grip| Region { corners: grip.corners_m.iter().map(|p| p.map(|x| x * MM_PER_M)).collect() }).collect();
-    let size = MM_PER_M * element_m.unwrap_or_else(|| default_size_m(part));
+    let size = MM_PER_M * element_m.unwrap_or_else(|| default_size_m(plate));
     let elements = elements::mesh(shape, &regions, size).map_err(|problem| Error { place: Place::Part, problem })?;
     let mut out = String::from("*HEADING\n");
     let plain = |text: &str| text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '?' }).take(LONGEST).collect::<String>();
@@ -38,7 +38,7 @@ pub(crate) fn write(part: &Part, shape: &Shape, element_m: Option<f64>) -> Resul
     }
     let _ = writeln!(out, "** Units: mm, N, MPa. Sides of elements: about {} mm.", length(size));
     add_elements(&elements, &mut out);
-    match &part.trial {
+    match &plate.trial {
         Ok(trial) => add_trial(trial, shape.depth, &elements, &mut out),
         Err(why) => {
             let _ = writeln!(out, "** Only the mesh: {}.", plain(why));
@@ -48,10 +48,10 @@ pub(crate) fn write(part: &Part, shape: &Shape, element_m: Option<f64>) -> Resul
 }
 
 /// A quarter of the thinnest wall, or a fiftieth of the part where it has no two faces opposite each other, m.
-fn default_size_m(part: &Part) -> f64 {
-    let holes = part.holes.iter().map(|hole| Profile::circle(hole.centre_m, 0.5 * hole.diameter_m).reversed());
-    let profiles: Vec<Profile> = std::iter::once(&part.outline).chain(&part.cutouts).cloned().chain(holes).collect();
-    let bounds = part.outline.bounds();
+fn default_size_m(plate: &Plate) -> f64 {
+    let holes = plate.holes.iter().map(|hole| Profile::circle(hole.centre_m, 0.5 * hole.diameter_m).reversed());
+    let profiles: Vec<Profile> = std::iter::once(&plate.outline).chain(&plate.cutouts).cloned().chain(holes).collect();
+    let bounds = plate.outline.bounds();
     let extent_m = (bounds.max_m[0] - bounds.min_m[0]).max(bounds.max_m[1] - bounds.min_m[1]);
     thinnest_wall(&profiles).map_or(extent_m / 50.0, |wall| (wall.width_m / THROUGH).min(extent_m / 50.0))
 }

@@ -31,12 +31,13 @@ mod stl;
 mod svg;
 mod text;
 mod three_mf;
+mod turned;
 mod zip;
 
 pub use error::{Boundary, Error, Place, Problem};
 pub use format::{Format, UnknownFormat};
 
-use forcewright_model::Part;
+use forcewright_model::{Body, Part, Plate, Turned};
 
 /// How closely curves are followed where a format cannot hold them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +70,14 @@ pub fn write(part: &Part, format: Format, options: &Options) -> Result<Vec<u8>, 
             return Err(Error { place: Place::Options, problem: Problem::Option { name, value, largest } });
         }
     }
-    let shape = shape::Shape::new(part)?;
+    match &part.body {
+        Body::Plate(plate) => write_plate(part, plate, format, options),
+        Body::Turned(turned) => write_turned(part, turned, format, options),
+    }
+}
+
+fn write_plate(part: &Part, plate: &Plate, format: Format, options: &Options) -> Result<Vec<u8>, Error> {
+    let shape = shape::Shape::new(plate)?;
     if matches!(format, Format::Stl | Format::ThreeMf) {
         let mesh = mesh::extruded(&shape, options.facet_error_m * shape::MM_PER_M)?;
         return Ok(if format == Format::Stl { stl::write(part, &mesh) } else { three_mf::write(part, &mesh) });
@@ -78,8 +86,22 @@ pub fn write(part: &Part, format: Format, options: &Options) -> Result<Vec<u8>, 
     let text = match format {
         Format::Dxf => dxf::write(part, &shape, options.arc_error_m * shape::MM_PER_M),
         Format::Svg => svg::write(part, &shape),
-        Format::Inp => inp::write(part, &shape, options.element_m)?,
+        Format::Inp => inp::write(part, plate, &shape, options.element_m)?,
         _ => step::write(part, &shape),
     };
     Ok(text.into_bytes())
+}
+
+fn write_turned(part: &Part, turned: &Turned, format: Format, options: &Options) -> Result<Vec<u8>, Error> {
+    let stack = turned::Stack::new(turned)?;
+    let mesh = || turned::mesh(&stack, options.facet_error_m * shape::MM_PER_M);
+    let drawing = || shape::Shape::half_section(turned).and_then(|shape| cap::check(&shape).map(|()| shape));
+    match format {
+        Format::Stl => Ok(stl::write(part, &mesh()?)),
+        Format::ThreeMf => Ok(three_mf::write(part, &mesh()?)),
+        Format::Step => Ok(turned::write(part, &stack).into_bytes()),
+        Format::Dxf => Ok(dxf::write(part, &drawing()?, options.arc_error_m * shape::MM_PER_M).into_bytes()),
+        Format::Svg => Ok(svg::write(part, &drawing()?).into_bytes()),
+        Format::Inp => Err(Error { place: Place::Part, problem: Problem::OnlyPlates { format } }),
+    }
 }

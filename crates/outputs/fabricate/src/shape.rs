@@ -3,7 +3,7 @@
 use forcewright_base::maths;
 use forcewright_curves::vector::{cross, dot, norm, scale, sub};
 use forcewright_curves::{Profile, Segment, Spline};
-use forcewright_model::Part;
+use forcewright_model::{Plate, Turned};
 
 use crate::error::{Boundary, Error, Place, Problem};
 
@@ -70,11 +70,13 @@ pub(crate) struct Shape {
     pub(crate) cutouts: Vec<Loop>,
     pub(crate) holes: Vec<Circle>,
     pub(crate) depth: f64,
+    /// Ends of the centre line of a half section; `None` for plates.
+    pub(crate) axis: Option<[Point; 2]>,
 }
 
 impl Shape {
     /// Checks everything but whether boundaries meet, which is for [`crate::cap`] to see.
-    pub(crate) fn new(part: &Part) -> Result<Self, Error> {
+    pub(crate) fn new(part: &Plate) -> Result<Self, Error> {
         if !(1e-6..1e3).contains(&part.depth_m) {
             return Err(Error { place: Place::Part, problem: Problem::Depth { depth_m: part.depth_m } });
         }
@@ -92,6 +94,19 @@ impl Shape {
             cutouts: part.cutouts.iter().enumerate().map(cutout).collect::<Result<_, _>>()?,
             holes: part.holes.iter().enumerate().map(hole).collect::<Result<_, _>>()?,
             depth: part.depth_m * MM_PER_M,
+            axis: None,
+        })
+    }
+
+    /// The half section of a turned part at the angle 0: z to the right, radii upwards, the centre line below.
+    pub(crate) fn half_section(turned: &Turned) -> Result<Self, Error> {
+        let profile = turned.half_section(0.0).map_err(|error| Error { place: Place::Part, problem: Problem::Turned(error) })?;
+        Ok(Self {
+            outline: Loop::new(Boundary::Outline, &profile)?,
+            cutouts: Vec::new(),
+            holes: Vec::new(),
+            depth: 0.0,
+            axis: Some([[0.0; 2], [turned.length_m() * MM_PER_M, 0.0]]),
         })
     }
 
@@ -101,9 +116,9 @@ impl Shape {
         std::iter::once(&self.outline).chain(&self.cutouts).cloned().chain(holes)
     }
 
-    /// Least and greatest coordinates of the outline, to a thousandth of a millimetre.
+    /// Least and greatest coordinates of the outline and the centre line, to a thousandth of a millimetre.
     pub(crate) fn extent(&self) -> [Point; 2] {
-        let points = self.outline.points(1e-3);
+        let points: Vec<Point> = self.outline.points(1e-3).into_iter().chain(self.axis.into_iter().flatten()).collect();
         let bound = |of: fn(f64, f64) -> f64, start: f64| {
             points.iter().fold([start; 2], |bound, point| [of(bound[0], point[0]), of(bound[1], point[1])])
         };
@@ -112,11 +127,21 @@ impl Shape {
 }
 
 impl Circle {
-    fn as_loop(self, index: usize) -> Loop {
+    /// The boundary of a hole.
+    pub(crate) fn as_loop(self, index: usize) -> Loop {
+        Loop { boundary: Boundary::Hole(index), edges: self.halves(-std::f64::consts::PI) }
+    }
+
+    /// The boundary of what lies inside of it.
+    pub(crate) fn as_outline(self) -> Loop {
+        Loop { boundary: Boundary::Outline, edges: self.halves(std::f64::consts::PI) }
+    }
+
+    fn halves(self, sweep_rad: f64) -> Vec<Edge> {
         let Self { centre, radius } = self;
         let (right, left) = ([centre[0] + radius, centre[1]], [centre[0] - radius, centre[1]]);
-        let half = |from, to| Edge { from, to, curve: Curve::Arc { centre, radius, sweep_rad: -std::f64::consts::PI } };
-        Loop { boundary: Boundary::Hole(index), edges: vec![half(right, left), half(left, right)] }
+        let half = |from, to| Edge { from, to, curve: Curve::Arc { centre, radius, sweep_rad } };
+        vec![half(right, left), half(left, right)]
     }
 }
 

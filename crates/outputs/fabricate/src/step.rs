@@ -16,6 +16,11 @@ use crate::shape::{Curve, Edge, Loop, MM_PER_M, Point, Shape};
 use crate::text::{length, ratio};
 
 pub(crate) fn write(part: &Part, shape: &Shape) -> String {
+    document(part, |step| step.faces(shape))
+}
+
+/// The file of a part whose solid has these faces.
+pub(crate) fn document(part: &Part, faces: impl FnOnce(&mut Step) -> Vec<Entity>) -> String {
     let mut step = Step { out: String::new(), last: 0 };
     let (name, title) = (quoted(&part.name), quoted(&part.title));
     let material = part.material.as_ref().map_or_else(|| "''".to_owned(), |material| quoted(&format!("Material: {material}")));
@@ -30,7 +35,7 @@ pub(crate) fn write(part: &Part, shape: &Shape) -> String {
     let of_shape = step.add(format_args!("PRODUCT_DEFINITION_SHAPE('','',{definition})"));
     let units = step.units();
     let frame = step.frame(&[0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0]);
-    let faces = step.faces(shape);
+    let faces = faces(&mut step);
     let shell = step.add(format_args!("CLOSED_SHELL('',({}))", faces.join(",")));
     let solid = step.add(format_args!("MANIFOLD_SOLID_BREP({name},{shell})"));
     let representation = step.add(format_args!("ADVANCED_BREP_SHAPE_REPRESENTATION({name},({frame},{solid}),{units})"));
@@ -45,13 +50,17 @@ pub(crate) fn write(part: &Part, shape: &Shape) -> String {
 }
 
 /// The entities, numbered from 1.
-struct Step {
+pub(crate) struct Step {
     out: String,
     last: usize,
 }
 
+/// Kinds of bounds of a face.
+pub(crate) const OUTER: &str = "FACE_OUTER_BOUND";
+pub(crate) const INNER: &str = "FACE_BOUND";
+
 /// The number of an entity, as it is referred to.
-type Entity = String;
+pub(crate) type Entity = String;
 
 /// An edge of the solid: its curve with both ends.
 #[derive(Clone, Debug)]
@@ -60,15 +69,15 @@ struct Rim {
     curve: Entity,
 }
 
-/// What one boundary gives to the solid.
-struct Ring {
-    walls: Vec<Entity>,
-    bottom: Vec<Entity>,
-    top: Vec<Entity>,
+/// What one boundary gives to the solid: walls, and the edges below and above with the material to their left.
+pub(crate) struct Ring {
+    pub(crate) walls: Vec<Entity>,
+    pub(crate) bottom: Vec<Entity>,
+    pub(crate) top: Vec<Entity>,
 }
 
 impl Step {
-    fn add(&mut self, entity: impl Display) -> Entity {
+    pub(crate) fn add(&mut self, entity: impl Display) -> Entity {
         self.last += 1;
         let _ = writeln!(self.out, "#{}={entity};", self.last);
         format!("#{}", self.last)
@@ -87,7 +96,7 @@ impl Step {
         ))
     }
 
-    fn point(&mut self, point: &[f64; 3]) -> Entity {
+    pub(crate) fn point(&mut self, point: &[f64; 3]) -> Entity {
         self.add(format_args!("CARTESIAN_POINT('',({}))", reals(point, length)))
     }
 
@@ -108,12 +117,12 @@ impl Step {
     }
 
     /// A face of plane, walls or caps, from its bounds.
-    fn face(&mut self, bounds: &[Entity], surface: &str, is_along: bool) -> Entity {
+    pub(crate) fn face(&mut self, bounds: &[Entity], surface: &str, is_along: bool) -> Entity {
         self.add(format_args!("ADVANCED_FACE('',({}),{surface},{})", bounds.join(","), logical(is_along)))
     }
 
     /// A closed chain of edges, each with whether it is passed forwards.
-    fn bound(&mut self, chain: &[(&str, bool)], kind: &str) -> Entity {
+    pub(crate) fn bound(&mut self, chain: &[(&str, bool)], kind: &str) -> Entity {
         let oriented = |(edge, is_forward): &(&str, bool)| self.add(format_args!("ORIENTED_EDGE('',*,*,{edge},{})", logical(*is_forward)));
         let oriented: Vec<Entity> = chain.iter().map(oriented).collect();
         let chain = self.add(format_args!("EDGE_LOOP('',({}))", oriented.join(",")));
@@ -124,42 +133,56 @@ impl Step {
     fn faces(&mut self, shape: &Shape) -> Vec<Entity> {
         let (mut faces, mut bottom, mut top) = (Vec::new(), Vec::new(), Vec::new());
         for (index, boundary) in shape.loops().enumerate() {
-            let ring = self.ring(&boundary, shape.depth);
-            let kind = if index == 0 { "FACE_OUTER_BOUND" } else { "FACE_BOUND" };
-            // Seen from below everything runs backwards.
-            let below: Vec<(&str, bool)> = ring.bottom.iter().rev().map(|edge| (edge.as_str(), false)).collect();
-            bottom.push(self.bound(&below, kind));
-            let above: Vec<(&str, bool)> = ring.top.iter().map(|edge| (edge.as_str(), true)).collect();
-            top.push(self.bound(&above, kind));
+            let ring = self.ring(&boundary, [0.0, shape.depth]);
+            let kind = if index == 0 { OUTER } else { INNER };
+            bottom.push(self.under(&ring, kind));
+            top.push(self.over(&ring, kind));
             faces.extend(ring.walls);
         }
-        for (bounds, z, axis) in [(bottom, 0.0, -1.0), (top, shape.depth, 1.0)] {
-            let frame = self.frame(&[0.0, 0.0, z], [0.0, 0.0, axis], [1.0, 0.0]);
-            let plane = self.add(format_args!("PLANE('',{frame})"));
-            faces.push(self.face(&bounds, &plane, true));
-        }
+        faces.push(self.flat(&bottom, 0.0, -1.0));
+        faces.push(self.flat(&top, shape.depth, 1.0));
         faces
     }
 
-    fn ring(&mut self, boundary: &Loop, depth: f64) -> Ring {
+    /// The lower edges of walls as a bound of what lies there; seen from below everything runs backwards.
+    pub(crate) fn under(&mut self, ring: &Ring, kind: &str) -> Entity {
+        let chain: Vec<(&str, bool)> = ring.bottom.iter().rev().map(|edge| (edge.as_str(), false)).collect();
+        self.bound(&chain, kind)
+    }
+
+    /// The upper edges of walls as a bound of what lies there.
+    pub(crate) fn over(&mut self, ring: &Ring, kind: &str) -> Entity {
+        let chain: Vec<(&str, bool)> = ring.top.iter().map(|edge| (edge.as_str(), true)).collect();
+        self.bound(&chain, kind)
+    }
+
+    /// A face across z at a height, seen from above (`axis` 1) or below (−1).
+    pub(crate) fn flat(&mut self, bounds: &[Entity], z: f64, axis: f64) -> Entity {
+        let frame = self.frame(&[0.0, 0.0, z], [0.0, 0.0, axis], [1.0, 0.0]);
+        let plane = self.add(format_args!("PLANE('',{frame})"));
+        self.face(bounds, &plane, true)
+    }
+
+    /// The walls above a boundary between two heights.
+    pub(crate) fn ring(&mut self, boundary: &Loop, [low, high]: [f64; 2]) -> Ring {
         let count = boundary.edges.len();
         let mut corners = Vec::with_capacity(count);
         for edge in &boundary.edges {
-            let ends = [0.0, depth].map(|z| {
+            let ends = [low, high].map(|z| {
                 let point = self.point(&[edge.from[0], edge.from[1], z]);
                 self.add(format_args!("VERTEX_POINT('',{point})"))
             });
-            let line = self.line(&[edge.from[0], edge.from[1], 0.0], [0.0, 0.0, 1.0]);
+            let line = self.line(&[edge.from[0], edge.from[1], low], [0.0, 0.0, 1.0]);
             let upright = self.add(format_args!("EDGE_CURVE('',{},{},{line},.T.)", ends[0], ends[1]));
             corners.push((ends, upright));
         }
         let mut ring = Ring { walls: Vec::new(), bottom: Vec::new(), top: Vec::new() };
         for (k, edge) in boundary.edges.iter().enumerate() {
             let ((here, left), (next, right)) = (&corners[k], &corners[(k + 1) % count]);
-            let bottom = self.rim(edge, 0.0, &here[0], &next[0]);
-            let top = self.rim(edge, depth, &here[1], &next[1]);
-            let bound = self.bound(&[(&bottom.edge, true), (right, true), (&top.edge, false), (left, false)], "FACE_OUTER_BOUND");
-            let (surface, is_along) = self.wall(edge, &bottom.curve);
+            let bottom = self.rim(edge, low, &here[0], &next[0]);
+            let top = self.rim(edge, high, &here[1], &next[1]);
+            let bound = self.bound(&[(&bottom.edge, true), (right, true), (&top.edge, false), (left, false)], OUTER);
+            let (surface, is_along) = self.wall(edge, low, &bottom.curve);
             ring.walls.push(self.face(&[bound], &surface, is_along));
             ring.bottom.push(bottom.edge);
             ring.top.push(top.edge);
@@ -207,15 +230,15 @@ impl Step {
     }
 
     /// The surface above an edge, and whether its own normal points out of the material, to the right of the edge.
-    fn wall(&mut self, edge: &Edge, bottom: &str) -> (Entity, bool) {
+    fn wall(&mut self, edge: &Edge, z: f64, bottom: &str) -> (Entity, bool) {
         match &edge.curve {
             Curve::Line => {
                 let [x, y] = heading(edge);
-                let frame = self.frame(&[edge.from[0], edge.from[1], 0.0], [y, -x, 0.0], [x, y]);
+                let frame = self.frame(&[edge.from[0], edge.from[1], z], [y, -x, 0.0], [x, y]);
                 (self.add(format_args!("PLANE('',{frame})")), true)
             }
             Curve::Arc { centre, radius, sweep_rad } => {
-                let frame = self.frame(&[centre[0], centre[1], 0.0], [0.0, 0.0, 1.0], first_axis(edge, *centre, *sweep_rad));
+                let frame = self.frame(&[centre[0], centre[1], z], [0.0, 0.0, 1.0], first_axis(edge, *centre, *sweep_rad));
                 (self.add(format_args!("CYLINDRICAL_SURFACE('',{frame},{})", real(&length(*radius)))), *sweep_rad > 0.0)
             }
             Curve::Spline(_) => {

@@ -32,11 +32,17 @@ pub(crate) fn write(part: &Part, shape: &Shape) -> String {
         let _ = writeln!(out, "<path d=\"{}\"/>", path(cutout));
     }
     out.push_str("</g>\n<g id=\"holes\" stroke=\"#0000ff\">\n");
-    for (hole, told) in shape.holes.iter().zip(&part.holes) {
+    for (hole, told) in shape.holes.iter().zip(part.plate().map_or(&[][..], |plate| &plate.holes)) {
         let ([x, y], r) = (coordinates(hole.centre), length(hole.radius));
         let _ = writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"><title>{}</title></circle>", xml(&told.purpose));
     }
-    out.push_str("</g>\n</g>\n</svg>\n");
+    out.push_str("</g>\n");
+    if let Some(axis) = shape.axis {
+        let [[x, y], [u, v]] = axis.map(coordinates);
+        let line = format!("<line x1=\"{x}\" y1=\"{y}\" x2=\"{u}\" y2=\"{v}\"/>");
+        let _ = writeln!(out, "<g id=\"centre\" stroke=\"#008000\" stroke-dasharray=\"4 1 0.5 1\">\n{line}\n</g>");
+    }
+    out.push_str("</g>\n</svg>\n");
     out
 }
 

@@ -1,7 +1,7 @@
 //! Numbers and texts as files want them.
 
 pub(crate) use forcewright_base::text::xml;
-use forcewright_model::Part;
+use forcewright_model::{Body, Part, Plate, Section, Turned};
 
 use crate::shape::MM_PER_M;
 
@@ -21,20 +21,56 @@ fn decimals(value: f64, digits: usize) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// What people must know to make the part, a line each: title, material and depth, holes, notes.
+/// What people must know to make the part, a line each: title, material and size, holes or sections, notes.
 pub(crate) fn remarks(part: &Part) -> Vec<String> {
     let material = part.material.as_deref().unwrap_or("not stated");
-    let mut lines = vec![
-        part.title.clone(),
-        format!("Material: {material}. Depth: {} mm.", length(part.depth_m * MM_PER_M)),
-        "All lengths in mm.".to_owned(),
-    ];
-    for hole in &part.holes {
+    let (size, details) = match &part.body {
+        Body::Plate(plate) => (format!("Depth: {} mm.", length(plate.depth_m * MM_PER_M)), holes(plate)),
+        Body::Turned(turned) => (format!("Length: {} mm.", length(turned.length_m() * MM_PER_M)), sections(turned)),
+    };
+    let head = [part.title.clone(), format!("Material: {material}. {size}"), "All lengths in mm.".to_owned()];
+    head.into_iter().chain(details).chain(part.notes.iter().cloned()).collect()
+}
+
+fn holes(plate: &Plate) -> Vec<String> {
+    let line = |hole: &forcewright_model::Hole| {
         let [x, y] = hole.centre_m.map(|coordinate| length(coordinate * MM_PER_M));
         let diameter = length(hole.diameter_m * MM_PER_M);
-        lines.push(format!("Hole of diameter {diameter} at ({x}, {y}): {}", hole.purpose));
+        format!("Hole of diameter {diameter} at ({x}, {y}): {}", hole.purpose)
+    };
+    plate.holes.iter().map(line).collect()
+}
+
+/// Sections from z = 0 upwards, the bore, and the drillings, which no solid shows.
+fn sections(turned: &Turned) -> Vec<String> {
+    let mm = |m: f64| length(m * MM_PER_M);
+    let degrees = |rad: f64| decimals(rad.to_degrees(), 6);
+    let mut lines = Vec::new();
+    for (section, pair) in turned.sections.iter().zip(turned.steps_m().windows(2)) {
+        let place = format!("z = {} to {}", mm(pair[0]), mm(pair[1]));
+        lines.push(match section {
+            Section::Plain { radius_m, .. } => format!("{place}: diameter {}", mm(2.0 * radius_m)),
+            Section::Grooved(grooved) => {
+                let hand = if grooved.lead_m > 0.0 { "right" } else { "left" };
+                let [bottom, top] = section.radii_m().map(|m| mm(2.0 * m));
+                let (count, lead, phase) = (grooved.starts, mm(grooved.lead_m.abs()), degrees(grooved.phase_rad));
+                let grooves = if count == 1 { "1 groove".to_owned() } else { format!("{count} grooves side by side") };
+                format!(
+                    "{place}: {grooves}, {hand}-handed, lead {lead}, diameter {top}, {bottom} at the bottom, \
+                     middle of a groove at {phase} degrees where z = {}",
+                    mm(pair[0])
+                )
+            }
+        });
     }
-    lines.extend(part.notes.iter().cloned());
+    if turned.bore_diameter_m > 0.0 {
+        lines.push(format!("Bore of diameter {}", mm(turned.bore_diameter_m)));
+    }
+    lines.extend(turned.drillings.iter().map(|drilling| {
+        let [z, diameter, depth] = [drilling.z_m, drilling.diameter_m, drilling.depth_m].map(mm);
+        let angle = degrees(drilling.angle_rad);
+        format!("Drill diameter {diameter}, {depth} deep, at z = {z} and {angle} degrees, not cut into the solid: {}", drilling.purpose)
+    }));
     lines
 }
 

@@ -2,7 +2,7 @@
 
 use forcewright_curves::{Profile, Segment};
 use forcewright_fabricate::{Boundary, Error, Format, Options, Place, Problem, write};
-use forcewright_model::{Hole, Part};
+use forcewright_model::{Hole, Part, Plate};
 
 #[allow(dead_code, unreachable_pub, missing_docs, reason = "shared with an example and other tests, which use all of it")]
 mod common;
@@ -12,16 +12,17 @@ use common::{arc, circle, line, rounded, spline};
 /// 40 mm by 30 mm with a cutout and a hole.
 fn sound() -> Part {
     let mut part = common::part("sound", 0.003, rounded(0.04, 0.03, 0.002));
-    part.cutouts = vec![circle([0.01, 0.01], 0.004, false)];
-    part.holes = vec![Hole { centre_m: [0.03, 0.02], diameter_m: 0.004, purpose: String::new() }];
+    let plate = common::plate_mut(&mut part);
+    plate.cutouts = vec![circle([0.01, 0.01], 0.004, false)];
+    plate.holes = vec![Hole { centre_m: [0.03, 0.02], diameter_m: 0.004, purpose: String::new() }];
     part
 }
 
 /// The error of a sound part after one change; the same for every format.
 #[allow(clippy::unwrap_used, reason = "test code")]
-fn after(change: impl Fn(&mut Part)) -> Error {
+fn after(change: impl Fn(&mut Plate)) -> Error {
     let mut part = sound();
-    change(&mut part);
+    change(common::plate_mut(&mut part));
     let errors: Vec<Error> = Format::ALL.iter().map(|&format| write(&part, format, &Options::default()).unwrap_err()).collect();
     assert!(errors.iter().all(|error| error.to_string() == errors[0].to_string()), "{errors:?}");
     errors[0].clone()

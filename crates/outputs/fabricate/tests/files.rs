@@ -35,7 +35,7 @@ fn the_same_part_is_the_same_bytes() {
 fn areas_within_bulges_are_exact_but_for_splines() {
     for Sample { part, area_m2, .. } in samples() {
         let (polylines, radii) = reading::dxf(&text(&part, Format::Dxf));
-        assert_eq!((polylines.len(), radii.len()), (1 + part.cutouts.len(), part.holes.len()));
+        assert_eq!((polylines.len(), radii.len()), (1 + common::plate_of(&part).cutouts.len(), common::plate_of(&part).holes.len()));
         let bulges: f64 = polylines.iter().map(|corners| reading::area_of_bulges(corners)).sum();
         let area = bulges - radii.iter().map(|radius| std::f64::consts::PI * radius * radius).sum::<f64>();
         let has_splines = matches!(part.name.as_str(), "tiny" | "strip" | "blob");
@@ -65,12 +65,12 @@ fn meshes_are_closed_and_hold_the_volume_that_chords_leave() {
             let stl = Mesh::of_stl(&write(&part, Format::Stl, &options).unwrap());
             let packed = Mesh::of_3mf(&write(&part, Format::ThreeMf, &options).unwrap());
             assert_eq!(stl.triangles().collect::<Vec<_>>(), packed.triangles().collect::<Vec<_>>(), "{}: the two meshes differ", part.name);
-            let holes = part.cutouts.len() + part.holes.len();
+            let holes = common::plate_of(&part).cutouts.len() + common::plate_of(&part).holes.len();
             stl.check_closed(&part.name);
             assert_eq!(stl.euler(), 2 - 2 * i64::try_from(holes).unwrap(), "{}", part.name);
-            let (volume, exact) = (stl.volume_mm3(), area_m2 * part.depth_m * 1e9);
+            let (volume, exact) = (stl.volume_mm3(), area_m2 * common::plate_of(&part).depth_m * 1e9);
             let strip_mm2 = (facet_error_m * 1e3 + 1e-5) * boundary_m * 1e3;
-            assert!((volume - exact).abs() <= strip_mm2 * part.depth_m * 1e3, "{}: {volume} for {exact}", part.name);
+            assert!((volume - exact).abs() <= strip_mm2 * common::plate_of(&part).depth_m * 1e3, "{}: {volume} for {exact}", part.name);
             errors.push((volume - exact).abs());
         }
         // A quarter of the chord error is a quarter of the volume lost, where that is not a difference of two.
@@ -111,7 +111,7 @@ fn solids_are_closed_shells_of_the_right_genus() {
         // Euler and Poincaré: V − E + F − (bounds − F) = 2 (1 − genus).
         let count = |kind| i64::try_from(step.of_kind(kind).len()).unwrap();
         let characteristic = count("VERTEX_POINT") - count("EDGE_CURVE") + count("ADVANCED_FACE") - count("FACE_BOUND");
-        let genus = i64::try_from(part.cutouts.len() + part.holes.len()).unwrap();
+        let genus = i64::try_from(common::plate_of(&part).cutouts.len() + common::plate_of(&part).holes.len()).unwrap();
         assert_eq!(characteristic, 2 - 2 * genus, "{}", part.name);
     }
 }
@@ -144,10 +144,12 @@ fn faces_of_solids_look_out_of_the_material() {
             }
         }
         let arcs = |wanted: bool| {
-            let segments = std::iter::once(&part.outline).chain(&part.cutouts).flat_map(|profile| &profile.segments);
+            let segments = std::iter::once(&common::plate_of(&part).outline)
+                .chain(&common::plate_of(&part).cutouts)
+                .flat_map(|profile| &profile.segments);
             segments.filter(|segment| matches!(segment, Segment::Arc { counterclockwise, .. } if *counterclockwise == wanted)).count()
         };
-        assert_eq!((outer, inner, planes), (arcs(true), arcs(false) + 2 * part.holes.len(), 2), "{}", part.name);
+        assert_eq!((outer, inner, planes), (arcs(true), arcs(false) + 2 * common::plate_of(&part).holes.len(), 2), "{}", part.name);
     }
 }
 
@@ -155,7 +157,7 @@ fn faces_of_solids_look_out_of_the_material() {
 #[test]
 fn meshes_stay_closed_where_rounding_joins_corners() {
     let mut part = common::part("far", 0.004, common::circle([100.0, -70.0], 0.005, true));
-    part.cutouts = vec![common::circle([100.0, -70.0], 0.003, false)];
+    common::plate_mut(&mut part).cutouts = vec![common::circle([100.0, -70.0], 0.003, false)];
     let mesh = Mesh::of_stl(&write(&part, Format::Stl, &Options { facet_error_m: 1e-9, ..Options::default() }).unwrap());
     mesh.check_closed("far");
     assert_eq!(mesh.euler(), 0);

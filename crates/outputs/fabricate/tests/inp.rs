@@ -143,7 +143,7 @@ fn dumbbell() -> Part {
     ];
     let mut part = common::part("dumbbell", 0.004, Profile { start_m: [-0.005, -0.005], segments });
     let plate = |y: f64| vec![[-0.005, y], [0.005, y], [0.005, y + 0.005], [-0.005, y + 0.005]];
-    part.trial = Ok(Trial {
+    common::plate_mut(&mut part).trial = Ok(Trial {
         young_pa: 2e9,
         poisson: 0.25,
         grips: vec![
@@ -203,7 +203,7 @@ fn parts_that_nobody_holds_are_only_meshed() {
 fn nothing_between_grips_is_no_mesh() {
     let mut part = dumbbell();
     let everything = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    part.trial.as_mut().unwrap().grips[0].corners_m = everything;
+    common::plate_mut(&mut part).trial.as_mut().unwrap().grips[0].corners_m = everything;
     let error = write(&part, Format::Inp, &Options::default()).unwrap_err();
     assert!(matches!(error.problem, Problem::Mesh { .. }), "{error}");
     let error = write(&dumbbell(), Format::Inp, &Options { element_m: Some(1e-8), ..Options::default() }).unwrap_err();

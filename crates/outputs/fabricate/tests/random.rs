@@ -52,7 +52,9 @@ fn any_part() -> impl Strategy<Value = Part> {
     let cut = (prop::collection::vec(profile(), 0..2), prop::collection::vec(hole, 0..3));
     (any::<String>(), number(), profile(), cut).prop_map(|(title, depth_m, outline, (cutouts, holes))| {
         let mut part = common::part("any", depth_m, outline);
-        (part.title, part.cutouts, part.holes) = (title, cutouts, holes);
+        part.title = title;
+        let plate = common::plate_mut(&mut part);
+        (plate.cutouts, plate.holes) = (cutouts, holes);
         part
     })
 }
@@ -85,7 +87,7 @@ fn star() -> impl Strategy<Value = Part> {
             }
         }
         let mut part = common::part("star", 0.004, Profile { start_m, segments });
-        part.cutouts = vec![common::circle([shift, 0.0], 0.4 * radius, false)];
+        common::plate_mut(&mut part).cutouts = vec![common::circle([shift, 0.0], 0.4 * radius, false)];
         part
     })
 }
@@ -110,9 +112,10 @@ proptest! {
         let Ok(stl) = write(&part, Format::Stl, &Options::default()) else { return Ok(()) };
         let mesh = reading::Mesh::of_stl(&stl);
         mesh.check_closed("star");
-        let [area, length] = [&part.outline, &part.cutouts[0]].map(common::integrals).iter().fold([0.0; 2], |sum, each| [sum[0] + each[0], sum[1] + each[1]]);
+        let plate = common::plate_of(&part);
+        let [area, length] = [&plate.outline, &plate.cutouts[0]].map(common::integrals).iter().fold([0.0; 2], |sum, each| [sum[0] + each[0], sum[1] + each[1]]);
         let strip = 5.01e-6 * length;
-        prop_assert!((mesh.volume_mm3() * 1e-9 - area * part.depth_m).abs() < strip * part.depth_m);
+        prop_assert!((mesh.volume_mm3() * 1e-9 - area * plate.depth_m).abs() < strip * plate.depth_m);
         let (polylines, _) = reading::dxf(&reading::text(&part, Format::Dxf));
         let drawn: f64 = polylines.iter().map(|corners| reading::area_of_bulges(corners)).sum();
         prop_assert!((drawn * 1e-6 - area).abs() < 1.01e-6 * length);

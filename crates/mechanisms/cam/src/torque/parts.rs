@@ -10,7 +10,7 @@ use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::judge::Comparison;
 use forcewright_curves::fit::{Arcs, Oriented, arcs};
 use forcewright_curves::{Profile, Segment};
-use forcewright_model::{Check, Hole, NoPart, Part, PartSet, Sheet};
+use forcewright_model::{Body, Check, Hole, NoPart, Part, PartSet, Plate, Sheet};
 
 use super::cut::Cut;
 use super::design::Design;
@@ -137,14 +137,16 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
         name: name.to_owned(),
         title: title.to_owned(),
         material: material(0),
-        depth_m: thickness_m,
         density_kg_per_m3: density(0),
-        outline,
-        cutouts,
-        fillets: None,
-        trial: Err(RIGID.to_owned()),
-        holes: hole.into_iter().collect(),
         notes: notes(design, &mechanism, &lobe, cost),
+        body: Body::Plate(Plate {
+            depth_m: thickness_m,
+            outline,
+            cutouts,
+            fillets: None,
+            trial: Err(RIGID.to_owned()),
+            holes: hole.into_iter().collect(),
+        }),
     };
     let pin_m = design.making.pin_m;
     let axle = Part {
@@ -152,13 +154,15 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
         title: "Axle (2), without what carries follower and springs".to_owned(),
         material: None,
         density_kg_per_m3: None,
-        depth_m: 2.0 * thickness_m,
-        outline: Profile::circle([0.0; 2], 0.5 * pin_m),
-        cutouts: Vec::new(),
-        fillets: None,
-        trial: Err(RIGID.to_owned()),
-        holes: Vec::new(),
         notes: vec!["Longer where several springs stand side by side on it.".to_owned()],
+        body: Body::Plate(Plate {
+            depth_m: 2.0 * thickness_m,
+            outline: Profile::circle([0.0; 2], 0.5 * pin_m),
+            cutouts: Vec::new(),
+            fillets: None,
+            trial: Err(RIGID.to_owned()),
+            holes: Vec::new(),
+        }),
     };
     let rollers = roller([design.cut_roller_m, pin_m, thickness_m], material(1), density(1));
     Ok(PartSet {

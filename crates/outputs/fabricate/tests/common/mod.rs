@@ -1,11 +1,13 @@
 //! Parts with known areas, for the tests and for programs that read the files.
 
+pub mod drums;
+
 use std::f64::consts::{PI, TAU};
 
 use forcewright_base::maths;
 use forcewright_base::quadrature::GaussLegendre;
 use forcewright_curves::{Profile, Segment, Spline};
-use forcewright_model::{Hole, Part};
+use forcewright_model::{Body, Hole, Part, Plate};
 
 /// A part and what is known of it without any writer.
 pub struct Sample {
@@ -18,7 +20,7 @@ pub struct Sample {
     pub faces: usize,
 }
 
-/// All samples.
+/// All plates.
 pub fn samples() -> Vec<Sample> {
     vec![tiny(), plate(), ring(), strip(), gear(), keyhole(), blob()]
 }
@@ -66,13 +68,31 @@ pub fn part(name: &str, depth_m: f64, outline: Profile) -> Part {
         title: format!("Sample {name}"),
         material: None,
         density_kg_per_m3: None,
-        depth_m,
-        outline,
-        cutouts: Vec::new(),
-        holes: Vec::new(),
-        fillets: None,
         notes: Vec::new(),
-        trial: Err("a sample".to_owned()),
+        body: Body::Plate(Plate {
+            depth_m,
+            outline,
+            cutouts: Vec::new(),
+            holes: Vec::new(),
+            fillets: None,
+            trial: Err("a sample".to_owned()),
+        }),
+    }
+}
+
+/// The plate of a part that is one.
+pub fn plate_of(part: &Part) -> &Plate {
+    match &part.body {
+        Body::Plate(plate) => plate,
+        Body::Turned(_) => panic!("{} is turned", part.name),
+    }
+}
+
+/// The same, to be changed.
+pub fn plate_mut(part: &mut Part) -> &mut Plate {
+    match &mut part.body {
+        Body::Plate(plate) => plate,
+        Body::Turned(_) => panic!("{} is turned", part.name),
     }
 }
 
@@ -93,7 +113,7 @@ fn tiny() -> Sample {
     ];
     let mut part = part("tiny", 0.002, Profile { start_m: [0.002, 0.0], segments });
     part.material = Some("PETG".to_owned());
-    part.holes = vec![hole(0.005, 0.005, 0.0034, "M3 clearance")];
+    plate_mut(&mut part).holes = vec![hole(0.005, 0.005, 0.0034, "M3 clearance")];
     measured(part, 6 + 2 + 2)
 }
 
@@ -102,7 +122,7 @@ fn plate() -> Sample {
     let mut part = part("plate", 0.005, rounded(w, h, r));
     "Plate <\"Größe\" & 100 %%d>".clone_into(&mut part.title);
     part.material = Some("aluminium EN AW-7075 ^T6".to_owned());
-    part.holes =
+    plate_mut(&mut part).holes =
         vec![hole(0.04, 0.025, 0.008, "shaft Ø8"), hole(0.01, 0.01, 0.0034, "M3 clearance"), hole(0.07, 0.04, 0.0034, "M3 clearance")];
     part.notes = vec!["Deburr both sides.".to_owned(), "Don't bend.".to_owned()];
     let round = PI / 4.0 * (0.008 * 0.008 + 2.0 * 0.0034 * 0.0034);
@@ -113,7 +133,7 @@ fn plate() -> Sample {
 fn ring() -> Sample {
     let (outer, inner, centre) = (0.02, 0.014, [-0.03, 0.01]);
     let mut part = part("ring", 0.003, circle(centre, outer, true));
-    part.cutouts = vec![circle(centre, inner, false)];
+    plate_mut(&mut part).cutouts = vec![circle(centre, inner, false)];
     Sample { part, area_m2: PI * (outer * outer - inner * inner), boundary_m: TAU * (outer + inner), faces: 2 + 2 + 2 }
 }
 
@@ -166,7 +186,7 @@ fn gear() -> Sample {
     let mut part = part("gear", 0.006, Profile { start_m, segments });
     let (inner, outer) = (0.008, 0.012);
     let end = |angle: f64| polar(0.5 * (inner + outer), angle);
-    part.cutouts = vec![Profile {
+    plate_mut(&mut part).cutouts = vec![Profile {
         start_m: polar(outer, 1.5),
         segments: vec![
             arc(polar(outer, -1.0), [0.0; 2], false),
@@ -175,7 +195,7 @@ fn gear() -> Sample {
             arc(polar(outer, 1.5), end(1.5), false),
         ],
     }];
-    part.holes = vec![hole(0.0, 0.0, 0.006, "bore")];
+    plate_mut(&mut part).holes = vec![hole(0.0, 0.0, 0.006, "bore")];
     measured(part, 60 + 4 + 2 + 2)
 }
 
@@ -197,7 +217,8 @@ fn keyhole() -> Sample {
     };
     let mut part = part("keyhole", 0.002, outline);
     let (from, to) = (head(0.004, -1.3, centre), head(0.004, -1.8, centre));
-    part.cutouts = vec![Profile { start_m: to, segments: vec![arc(from, centre, false), line(0.1, 0.17), Segment::Line { to_m: to }] }];
+    plate_mut(&mut part).cutouts =
+        vec![Profile { start_m: to, segments: vec![arc(from, centre, false), line(0.1, 0.17), Segment::Line { to_m: to }] }];
     measured(part, 4 + 3 + 2)
 }
 
@@ -211,7 +232,7 @@ fn blob() -> Sample {
     let mut inner: Vec<[f64; 2]> = (0..12).rev().map(|k| around(k, 0.012)).collect();
     inner.push(inner[0]);
     let start_m = inner[0];
-    part.cutouts = vec![Profile { start_m, segments: vec![Segment::Spline(spline(inner, &[0.5, 0.5, 0.5]))] }];
+    plate_mut(&mut part).cutouts = vec![Profile { start_m, segments: vec![Segment::Spline(spline(inner, &[0.5, 0.5, 0.5]))] }];
     measured(part, 2 + 2 + 2)
 }
 
@@ -226,8 +247,9 @@ pub fn spline(control_m: Vec<[f64; 2]>, inner: &[f64]) -> Spline {
 
 /// A sample whose area and length are integrated along its boundaries.
 fn measured(part: Part, faces: usize) -> Sample {
-    let rounds = part.holes.iter().map(|hole| circle(hole.centre_m, 0.5 * hole.diameter_m, false));
-    let profiles: Vec<Profile> = std::iter::once(&part.outline).chain(&part.cutouts).cloned().chain(rounds).collect();
+    let plate = plate_of(&part);
+    let rounds = plate.holes.iter().map(|hole| circle(hole.centre_m, 0.5 * hole.diameter_m, false));
+    let profiles: Vec<Profile> = std::iter::once(&plate.outline).chain(&plate.cutouts).cloned().chain(rounds).collect();
     let [area_m2, boundary_m] = profiles.iter().map(integrals).fold([0.0; 2], |sum, each| [sum[0] + each[0], sum[1] + each[1]]);
     Sample { part, area_m2, boundary_m, faces }
 }
@@ -256,7 +278,7 @@ pub fn integrals(profile: &Profile) -> [f64; 2] {
 }
 
 /// A point of a segment and its derivative, over [0, 1], or the knots of a spline.
-fn point_and_slope(segment: &Segment, from: [f64; 2], t: f64) -> ([f64; 2], [f64; 2]) {
+pub fn point_and_slope(segment: &Segment, from: [f64; 2], t: f64) -> ([f64; 2], [f64; 2]) {
     match segment {
         Segment::Line { to_m } => {
             let step = [to_m[0] - from[0], to_m[1] - from[1]];

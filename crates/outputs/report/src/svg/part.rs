@@ -1,10 +1,10 @@
-//! Pictures of plates as they are cut: outline with its windows and holes, overall size, narrow places.
+//! Pictures of parts: plates as they are cut, with windows and holes, turned parts cut along their axis; overall size, narrow places.
 
 use std::fmt::Write as _;
 
 use forcewright_base::units::{Unit, format_si};
-use forcewright_curves::{Bounds, Profile};
-use forcewright_model::{Part, PartSet};
+use forcewright_curves::{Bounds, Motion, Profile};
+use forcewright_model::{Body, Part, PartSet, Plate, Turned};
 
 use super::canvas::{Anchor, Canvas, Drawing, Style, n};
 use super::colour::Paint;
@@ -19,6 +19,8 @@ const MARGIN: f64 = 40.0;
 const EDGE: f64 = 14.0;
 /// From the plate to its dimension line.
 const OFF: f64 = 24.0;
+/// From a turned part to the one before it, in its largest radius.
+const ROOM: f64 = 0.3;
 /// Chords of curves, in drawing units.
 const CHORD: f64 = 0.05;
 const SMALL: Style = Style::plain(13.0);
@@ -36,9 +38,52 @@ impl View {
     }
 }
 
-/// Draws plates in their common plane.
+/// What is drawn of a part, in metres: boundaries, and the ends of the centre line of a turned part.
+struct Shown {
+    boundaries: Vec<Profile>,
+    axis: Option<[[f64; 2]; 2]>,
+}
+
+/// Plates lie where they are, in their common plane; turned parts follow to the right, axes upright.
+fn shown_parts(set: &PartSet) -> Vec<Shown> {
+    let plates = set.parts.iter().filter_map(Part::plate);
+    let mut bounds = plates.fold(Bounds::of([]), |all, plate| all.union(plate.outline.bounds()));
+    let one = |part: &Part| match &part.body {
+        Body::Plate(plate) => plate_boundaries(plate),
+        Body::Turned(turned) => {
+            let radius_m = turned.largest_radius_m();
+            let left_m = if bounds.max_m[0].is_finite() { bounds.max_m[0] + ROOM * radius_m } else { 0.0 };
+            let low_m = if bounds.min_m[1].is_finite() { bounds.min_m[1] } else { 0.0 };
+            let shown = sections(turned, [left_m + radius_m, low_m]);
+            bounds = shown.boundaries.iter().fold(bounds, |all, profile| all.union(profile.bounds()));
+            shown
+        }
+    };
+    set.parts.iter().map(one).collect()
+}
+
+fn plate_boundaries(plate: &Plate) -> Shown {
+    let holes = plate.holes.iter().map(|h| Profile::circle(h.centre_m, 0.5 * h.diameter_m));
+    Shown { boundaries: std::iter::once(plate.outline.clone()).chain(plate.cutouts.iter().cloned()).chain(holes).collect(), axis: None }
+}
+
+/// Both halves of a body cut along its axis, the foot of which is at a point. Nothing of a body that cannot be made.
+fn sections(turned: &Turned, foot_m: [f64; 2]) -> Shown {
+    // From (z, radius) to the right of an upright axis, and from there to the left.
+    let upright = Motion::mirror([0.0; 2], [1.0, 1.0]);
+    let placed = Motion::new(0.0, foot_m);
+    let half = |angle_rad: f64| turned.half_section(angle_rad).map(|profile| profile.transformed(&upright));
+    let right = half(0.0).map(|profile| profile.transformed(&placed));
+    let left = half(std::f64::consts::PI).map(|profile| profile.transformed(&Motion::mirror([0.0; 2], [0.0, 1.0])).transformed(&placed));
+    let end_m = [foot_m[0], foot_m[1] + turned.length_m()];
+    Shown { boundaries: right.into_iter().chain(left).collect(), axis: Some([foot_m, end_m]) }
+}
+
+/// Draws plates in their common plane, turned parts beside them.
 pub(super) fn draw(set: &PartSet, size: SceneSize, title: &str, caption: &str) -> Drawing {
-    let bounds = set.parts.iter().fold(Bounds::of([]), |all, part| all.union(part.outline.bounds()));
+    let parts = shown_parts(set);
+    let boundaries = || parts.iter().flat_map(|part| &part.boundaries);
+    let bounds = boundaries().fold(Bounds::of([]), |all, profile| all.union(profile.bounds()));
     let extent = |k: usize| ticks::sane(bounds.max_m[k] - bounds.min_m[k]).filter(|e| *e > 0.0).unwrap_or(1.0);
     let (w, h) = (extent(0), extent(1));
     let texts = [w, h].map(|length_m| format_si(length_m, &set.display, 4));
@@ -49,8 +94,8 @@ pub(super) fn draw(set: &PartSet, size: SceneSize, title: &str, caption: &str) -
     let view = View { scale, low: bounds.min_m, origin: [left, height - DIMENSION] };
     let mut canvas = Canvas::default();
     let mut placer = Placer::new(Rect::sized(EDGE, 4.0, size.width - 2.0 * EDGE, height - 8.0));
-    for part in &set.parts {
-        plate(&mut canvas, &mut placer, part, &view);
+    for part in &parts {
+        body(&mut canvas, &mut placer, part, &view);
     }
     let corners = [view.at(bounds.min_m), view.at(bounds.max_m)];
     for (k, text) in texts.iter().enumerate() {
@@ -74,11 +119,10 @@ pub(super) fn draw(set: &PartSet, size: SceneSize, title: &str, caption: &str) -
     canvas.finish(size.width, height + 4.0, title, format!("{caption} {}", words(set)).trim())
 }
 
-/// A plate: what is left of its outline after windows and holes.
-fn plate(canvas: &mut Canvas, placer: &mut Placer, part: &Part, view: &View) {
-    let holes = part.holes.iter().map(|h| Profile::circle(h.centre_m, 0.5 * h.diameter_m));
+/// What is between the boundaries of a part, and its centre line.
+fn body(canvas: &mut Canvas, placer: &mut Placer, part: &Shown, view: &View) {
     let mut d = String::new();
-    for profile in std::iter::once(part.outline.clone()).chain(part.cutouts.iter().cloned()).chain(holes) {
+    for profile in &part.boundaries {
         let at: Vec<[f64; 2]> = profile.tessellate(CHORD / view.scale).into_iter().map(|p| view.at(p)).collect();
         for (i, p) in at.iter().enumerate() {
             let _ = write!(d, "{}{} {}", if i == 0 { "M" } else { "L" }, n(p[0]), n(p[1]));
@@ -89,6 +133,12 @@ fn plate(canvas: &mut Canvas, placer: &mut Placer, part: &Part, view: &View) {
     }
     let paint = Paint::fill_and_stroke(Paint::Body, Paint::Ink);
     canvas.raw(&format!(r#"<path d="{d}" {paint} fill-rule="evenodd" stroke-width="1" stroke-linejoin="round"/>"#));
+    if let Some(axis) = part.axis {
+        let dashes = r#"stroke-dasharray="12 3 2 3""#;
+        canvas.open_stroke(Paint::Muted, 1.0, dashes);
+        canvas.segments(&[axis.map(|p| view.at(p))], "");
+        canvas.close();
+    }
 }
 
 /// The width below (`k` 0) or the height on the left (`k` 1), between lower left and upper right corner.
@@ -111,16 +161,22 @@ fn dimension(canvas: &mut Canvas, placer: &mut Placer, k: usize, [low, high]: [[
 
 /// What the picture shows, for those who cannot see it.
 fn words(set: &PartSet) -> String {
-    let one = |part: &Part| {
-        let [width, height] = part.size_m().map(|m| shown(m, &set.display));
-        let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
-        format!(
-            "{}: {width} × {height}, {} thick, {}, {}.",
-            part.name,
-            shown(part.depth_m, &set.display),
-            count(part.cutouts.len(), "window"),
-            count(part.holes.len(), "hole")
-        )
+    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let one = |part: &Part| match &part.body {
+        Body::Plate(plate) => {
+            let [width, height] = plate.size_m().map(|m| shown(m, &set.display));
+            format!(
+                "{}: {width} × {height}, {} thick, {}, {}.",
+                part.name,
+                shown(plate.depth_m, &set.display),
+                count(plate.cutouts.len(), "window"),
+                count(plate.holes.len(), "hole")
+            )
+        }
+        Body::Turned(turned) => {
+            let [diameter, length] = [2.0 * turned.largest_radius_m(), turned.length_m()].map(|m| shown(m, &set.display));
+            format!("{}: diameter {diameter}, {length} long, {}.", part.name, count(turned.sections.len(), "section"))
+        }
     };
     set.parts.iter().map(one).collect::<Vec<_>>().join(" ")
 }
