@@ -137,6 +137,13 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0608", "a warning of the analysis"),
     ("W0609", "a warning of the analysis"),
     ("W0610", "a warning of searches: tests of the family"),
+    ("E0705", "cables of different preload: tests of the family"),
+    ("W0701", "a warning of the analysis"),
+    ("W0702", "a warning of the analysis"),
+    ("W0703", "a warning of the analysis"),
+    ("W0704", "a warning of the analysis"),
+    ("W0705", "a warning of the analysis"),
+    ("W0706", "a warning of the analysis"),
 ];
 
 /// Edits of the cam example and the code that each must bring.
@@ -158,6 +165,18 @@ const TORQUE_EDITS: &[(&str, &str, &str)] = &[
     ),
     ("E0615", "shaft_diameter = \"12 mm\"", "shaft_diameter = \"60 mm\""),
 ];
+
+/// Edits of the cable drive and the code that each must bring.
+const CAPSTAN_EDITS: &[(&str, &str, &str)] = &[
+    ("E0701", "centre_distance = \"65 mm\"", "centre_distance = \"59 mm\""),
+    ("E0702", "seat_angle = \"150 deg\", ", ""),
+    ("E0703", "steel 7x19 1.5 mm", "rope of hair 1.5 mm"),
+    ("E0704", "lines = [0, 4]", "lines = [0, 5]"),
+    ("E0706", "[inertia]", "[environment]\ntemperature_change = \"20 K\"\n[inertia]"),
+];
+
+/// The cable drive.
+const CAPSTAN: &str = include_str!("../../../examples/capstan/longval.toml");
 
 /// The torque cam.
 const TORQUE_CAM: &str = include_str!("../../../examples/cam/torque-cam.toml");
@@ -197,7 +216,7 @@ fn every_code_is_met_and_every_code_met_is_explained() {
         met.extend(found);
     }
     let cams = CAM_EDITS.iter().map(|edit| (CAM, edit)).chain(TORQUE_EDITS.iter().map(|edit| (TORQUE_CAM, edit)));
-    for (example, (code, from, to)) in cams {
+    for (example, (code, from, to)) in cams.chain(CAPSTAN_EDITS.iter().map(|edit| (CAPSTAN, edit))) {
         assert!(example.contains(from), "{from} is not in the example");
         let found = codes_of(&example.replacen(from, to, 1), &Choices::default());
         if !found.contains(code) {

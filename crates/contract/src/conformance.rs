@@ -232,7 +232,8 @@ fn schema<M: Mechanism>() {
         let described = place["description"].as_str().is_some_and(|text| text.len() > 4);
         assert!(described || path.ends_with('*'), "the schema says nothing about `{path}`");
         // The table shows the keys of stages once.
-        let once = path.split_once(".*").filter(|(stages, _)| schema["properties"][*stages]["anyOf"].is_array());
+        let node = |path: &str| path.split('.').fold(schema.clone(), |at, key| at["properties"][key].clone());
+        let once = path.split_once(".*").filter(|(stages, _)| node(stages)["anyOf"].is_array());
         let shown = once.map_or_else(|| path.clone(), |(stages, key)| format!("{stages}{key}"));
         assert!(markdown.contains(&format!("| `{shown}` |")), "the table of parameters has no `{shown}`");
     }
@@ -417,18 +418,20 @@ fn units<M: Mechanism>(example: &str) {
     }
 }
 
-/// Dotted paths of every value typed; members of lists by name.
+/// Dotted paths of every value typed; members of lists by name, or by their place.
 fn typed(table: &Table, prefix: &str, found: &mut Vec<(String, Value)>) {
     for entry in &table.entries {
         let path = format!("{prefix}{}", entry.key);
         match &entry.item.value {
             Value::Table(inner) => typed(inner, &format!("{path}."), found),
             Value::List(items) if items.iter().any(|i| matches!(i.value, Value::Table(_))) => {
-                for item in items {
+                for (index, item) in items.iter().enumerate() {
                     let Value::Table(inner) = &item.value else { continue };
                     let mut inner = inner.clone();
-                    let Some(Value::Text(name)) = inner.take("name").map(|e| e.item.value) else {
-                        panic!("a member of `{path}` has no name")
+                    let name = match inner.take("name").map(|e| e.item.value) {
+                        Some(Value::Text(name)) => name,
+                        // Stages have their place, counted from 1.
+                        _ => (index + 1).to_string(),
                     };
                     typed(&inner, &format!("{path}.{name}."), found);
                 }

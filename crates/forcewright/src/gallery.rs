@@ -48,6 +48,10 @@ pub const EXAMPLES: &[Example] = examples![
     "cam/bench-press",
     "cam/weight-release",
     "cam/torque-cam",
+    "capstan/longval",
+    "capstan/haptic-handle",
+    "capstan/quadruped-leg",
+    "capstan/pointing-stage",
 ];
 
 macro_rules! data {

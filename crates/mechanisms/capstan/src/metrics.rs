@@ -56,7 +56,7 @@ pub const METRICS: &[MetricInfo] = &[
     metric("wire_bending_stress", D::Stress, false, "Bending stress of the outer wires on the smaller drum: an upper bound."),
     metric("cable_safety_factor", D::Ratio, true, "Breaking force over the largest tension; of steel cables less what bending over the smaller drum takes (Carl Stahl Sava)."),
     metric("shaft_load", D::Force, true, "Largest load of a shaft by the cables, at rest or under the required torque."),
-    metric("reflected_inertia_output", D::Inertia, false, "Moment of inertia felt at the output, that of the input times the square of the ratio."),
+    metric("reflected_inertia_output", D::Inertia, false, "Moment of inertia felt at the output: its own and that of the input times the square of the ratio."),
     metric("torsional_frequency", D::Frequency, false, "Frequency of the output against the held input under the required torque."),
     metric("torsional_frequency_free", D::Frequency, false, "Frequency of output against input, both free, under the required torque."),
 ];

@@ -336,7 +336,7 @@ impl Describe for Cable {
         v.quantity(&expansion.within(-1e-4, 1e-3), &mut self.expansion);
         let doc = "Part of its tension that the cable loses where it is bent round the input drum and straightened again; on the output drum less by the ratio of the radii.";
         v.quantity(&Param::new("bending_loss", doc).within(0.0, 0.5), &mut self.bending_loss);
-        let doc = "Groove lines of its two ends, from 0; by default those next to the cable before.";
+        let doc = "Groove lines of its two ends, from 0; by default as near to the other cables as they keep clear.";
         v.numbers(&Param::new("lines", doc).within(0.0, 1e4), &mut self.lines);
         v.quantity(&force("preload", "Tension at rest when it is assembled.").required(), &mut self.preload);
         let doc = "Part of the preload that bedding in and creep take.";

@@ -5,10 +5,10 @@ use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Quantity, Unit, format_si};
 use forcewright_contract::describe::{Located, Origin, Slot};
 use forcewright_elements::cables::{self, Construction};
-use forcewright_elements::materials::Property;
+use forcewright_elements::materials::{self, Property};
 
 use super::{Built, place_of, si};
-use crate::geometry::{Drive, GeometryError};
+use crate::geometry::{Drive, GeometryError, Layout};
 use crate::spec::{self, Spec};
 
 /// A cable of the drive, SI.
@@ -157,7 +157,21 @@ fn fill(typed: &mut spec::Cable, name: &Located<String>, diagnostics: &mut Diagn
     put(&mut typed.mass, entry.mass_kg_per_m(diameter_m), listed.and_then(|s| s.mass_kg_per_m.as_ref()), "g/m");
     put(&mut typed.min_bend_ratio, entry.least_ratio.as_ref().map(|p| p.value), entry.least_ratio.as_ref(), "");
     put(&mut typed.wire_diameter, entry.wire_m(diameter_m), None, "mm");
+    let steel = wire_material(&entry.name).and_then(materials::find);
+    let young = steel.and_then(|m| m.young_modulus_pa.as_ref());
+    put(&mut typed.wire_modulus, young.map(|p| p.value), young, "GPa");
     Some(entry)
+}
+
+/// The steel that stands for the wires of a construction, in the catalogue of materials; only its modulus is used.
+fn wire_material(construction: &str) -> Option<&'static str> {
+    if construction.contains("stainless") {
+        Some("1.4310 CP1100")
+    } else if construction.contains("galvanised") {
+        Some("EN 10270-1 SM 1 mm")
+    } else {
+        None
+    }
 }
 
 /// Works behind the values that the catalogue filled in.
@@ -173,36 +187,29 @@ fn sources_of(typed: &spec::Cable, entry: &'static Construction) -> Vec<&'static
     keys
 }
 
-/// E0704: groove lines of the ends. By default cable i ends on i·q and i·q + k, k the line next to where it lands, and q = k.
+/// E0704: groove lines of the ends. By default cables lie as close to each other as they keep clear.
 pub(super) fn place_lines(spec: &Spec, built: &mut Built, diagnostics: &mut Diagnostics) {
-    let apart = lines_apart(built);
+    let usual = usual_lines(built);
     let mut taken: Vec<i32> = Vec::new();
-    for (index, member) in spec.design.cables.iter().enumerate() {
-        let first = i32::try_from(index).unwrap_or(i32::MAX).saturating_mul(apart);
-        let usual = [first, first.saturating_add(apart)];
+    for (index, (member, usual)) in spec.design.cables.iter().zip(usual).enumerate() {
+        let beside = format!("`lines = [{}, {}]`", usual[0], usual[1]);
         let lines = match &member.value.lines {
             None => usual,
-            Some(typed) => {
-                let whole: Vec<i32> = typed.value.iter().filter(|x| x.fract() == 0.0).map(|x| *x as i32).collect();
-                match whole.as_slice() {
-                    [one, other] if whole.len() == typed.value.len() => [*one, *other],
-                    _ => {
-                        diagnostics.push(
-                            Diagnostic::error("E0704", typed.span, "a cable has two ends, each on a groove line")
-                                .label("not two whole numbers")
-                                .help(format!("for this cable: `lines = [{}, {}]`", usual[0], usual[1])),
-                        );
-                        usual
-                    }
-                }
-            }
+            Some(typed) => typed_lines(&typed.value).unwrap_or_else(|| {
+                diagnostics.push(
+                    Diagnostic::error("E0704", typed.span, "a cable has two ends, each on a groove line")
+                        .label("not two whole numbers")
+                        .help(format!("for this cable: {beside}")),
+                );
+                usual
+            }),
         };
-        let at = member.value.lines.as_ref().map_or(member.name.span, |l| l.span);
         if taken.contains(&lines[0]) {
+            let at = member.value.lines.as_ref().map_or(member.name.span, |l| l.span);
             diagnostics.push(
                 Diagnostic::error("E0704", at, format!("line {} is taken by another cable", lines[0]))
                     .label("the same first line")
-                    .help(format!("cables lie side by side: `lines = [{}, {}]`", usual[0], usual[1])),
+                    .help(format!("cables lie side by side: {beside}")),
             );
         }
         taken.push(lines[0]);
@@ -212,13 +219,28 @@ pub(super) fn place_lines(spec: &Spec, built: &mut Built, diagnostics: &mut Diag
     }
 }
 
-/// How many lines after its first end a cable comes back.
-fn lines_apart(built: &Built) -> i32 {
-    let turns = i32::try_from(built.extra_turns).unwrap_or(i32::MAX).saturating_add(1);
-    let mut layout = built.layout();
-    layout.cables = vec![[0, turns]];
-    match Drive::new(layout) {
-        Err(GeometryError::Lines { nearest, .. }) => i32::try_from(nearest).unwrap_or(turns),
-        _ => turns,
+fn typed_lines(typed: &[f64]) -> Option<[i32; 2]> {
+    match typed {
+        [one, other] if one.fract() == 0.0 && other.fract() == 0.0 => Some([*one as i32, *other as i32]),
+        _ => None,
     }
+}
+
+/// Lines of all cables that keep clear of each other; where there are none, side by side.
+fn usual_lines(built: &Built) -> Vec<[i32; 2]> {
+    let count = built.cables.len();
+    let turns = i32::try_from(built.extra_turns).unwrap_or(i32::MAX).saturating_add(1);
+    let one = |apart: i32| Drive::new(Layout { cables: vec![[0, apart]], ..built.layout() });
+    let (apart, drive) = match one(turns) {
+        Err(GeometryError::Lines { nearest, .. }) => {
+            let apart = i32::try_from(nearest).unwrap_or(turns);
+            (apart, one(apart).ok())
+        }
+        drive => (turns, drive.ok()),
+    };
+    let beside = |i: usize| {
+        let first = i32::try_from(i).unwrap_or(i32::MAX).saturating_mul(apart.saturating_add(1));
+        [first, first.saturating_add(apart)]
+    };
+    drive.and_then(|d| d.clear_cables(count, 0.0)).unwrap_or_else(|| (0..count).map(beside).collect())
 }
