@@ -205,9 +205,10 @@ def opened(browser, job):
 
 
 def wanted_figures(job):
-    """The figures that stand beside the report as files; every mechanism has at least its drawing and its force, or torque."""
+    """The figures that stand beside the report as files; every mechanism has at least its drawing and its force, torque or stiffness."""
     found = {path.stem for path in pathlib.Path(job["file"]).parent.glob("*.svg")}
-    return sorted(found | {"mechanism", "torque" if "torque" in found else "force"})
+    main = next((name for name in ("torque", "stiffness") if name in found), "force")
+    return sorted(found | {"mechanism", main})
 
 
 def look_at(browser, job):

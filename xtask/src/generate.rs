@@ -73,6 +73,22 @@ const GENERATED: &[Generated] = &[
         source: Source::Printed(&["reproduce", "sanchez2022", "--format", "markdown"]),
         region: Region::Between("validation"),
     },
+    Generated { file: "docs/reference/capstan.schema.json", source: Source::Printed(&["schema", "capstan"]), region: Region::Whole },
+    Generated {
+        file: "docs/reference/capstan-parameters.md",
+        source: Source::Printed(&["schema", "capstan", "--format", "markdown"]),
+        region: Region::Remarked,
+    },
+    Generated {
+        file: "crates/mechanisms/capstan/README.md",
+        source: Source::Printed(&["reproduce", "longval", "--format", "markdown"]),
+        region: Region::Between("validation"),
+    },
+    Generated {
+        file: "docs/images/longval.svg",
+        source: Source::Written(&["solve", "examples/capstan/longval.toml"], "mechanism.svg"),
+        region: Region::Whole,
+    },
     Generated {
         file: "docs/images/sanchez-2-springs.svg",
         source: Source::Written(&["solve", "examples/cam/sanchez-2-springs.toml"], "mechanism.svg"),

@@ -256,6 +256,7 @@ fn a_reader_that_goes_away_is_no_panic() {
         &["solve", "a.toml"],
         &["solve", "a.toml", "--json"],
         &["schema", "cam"],
+        &["schema", "capstan"],
         &["--help"],
         &["check", "a.toml"],
     ] {

@@ -49,7 +49,11 @@ fn misspell(word: &str, kind: usize, noise: &mut Noise) -> String {
 const KINDS: usize = 9;
 
 /// A whole project of every family.
-const PROJECTS: [(&str, &str); 2] = [("compliant", common::EXAMPLE), ("cam", include_str!("../../../examples/cam/sanchez-2-springs.toml"))];
+const PROJECTS: [(&str, &str); 3] = [
+    ("compliant", common::EXAMPLE),
+    ("cam", include_str!("../../../examples/cam/sanchez-2-springs.toml")),
+    ("capstan", include_str!("../../../examples/capstan/longval.toml")),
+];
 
 fn families() -> impl Iterator<Item = (&'static dyn Family, &'static str)> {
     FAMILIES.iter().map(|family| {

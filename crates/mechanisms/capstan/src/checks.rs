@@ -13,10 +13,11 @@ use crate::losses::unknown;
 use crate::metrics::METRICS;
 use crate::statics::Statics;
 
-/// Largest angle between a span and its groove, rad: 1.5° (`unirope-drums`).
+/// Largest angle between a span and its groove, rad: 1.5°, the rule of drum makers; no standard was at hand.
 const LARGEST_FLEET_RAD: f64 = 0.026_179_938_779_914_944;
-/// Radius of a seat over the diameter of the cable: of a new and of the widest groove (`unirope-drums`).
-const SEAT: [f64; 2] = [0.5, 0.56];
+/// Radius of a seat over the diameter of the cable: below the first it pinches, at the second steel cables endure two thirds of what they do
+/// at 0.53 (`feyrer-2015`).
+const SEAT: [f64; 2] = [0.5, 0.6];
 /// Most that a preload is raised in search of a stiffness.
 const MOST_PRELOAD: f64 = 64.0;
 
@@ -328,8 +329,8 @@ impl Context<'_> {
         let base = self.base("CAPS012", "seat", "Radius of the seat", "rope_clearance");
         let narrow = radius_m < SEAT[0] * cable_m;
         let (limit, sense) = if narrow { (SEAT[0] * cable_m, Sense::AtLeast) } else { (SEAT[1] * cable_m, Sense::AtMost) };
-        let fix = format!("makers ask for 0.53 of the cable's diameter: {}", self.length(0.53 * cable_m));
-        let basis = "radius of the seat against half the cable's diameter, and 0.56 of it, beyond which the cable is flattened";
+        let fix = format!("the usual one is 0.53 of the cable's diameter: {}", self.length(0.53 * cable_m));
+        let basis = "radius of the seat against half the cable's diameter, and 0.6 of it, where steel cables endure two thirds of what they do at 0.53";
         Some(Comparison { required: false, value: Some(radius_m), limit: Some(limit), sense, fix, basis: basis.to_owned(), ..base }.judge())
     }
 

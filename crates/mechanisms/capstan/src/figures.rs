@@ -115,7 +115,7 @@ pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measure
     let mut all = Vec::new();
     if let Some(film) = scene::drive(design, behaviour, torque_axis(design)) {
         let caption = "Seen along the axes, under the torque chosen below. The colour of the cable is its tension; the spirals outside the drums are the zones in which it slips, a turn further out for each turn on the drum.";
-        all.push(figure("drive", "Drive under load", caption.to_owned(), FigureContent::Film(film)));
+        all.push(figure("mechanism", "Drive under load", caption.to_owned(), FigureContent::Film(film)));
     }
     all.push(stiffness_figure(design, behaviour, measured));
     all.extend(loop_figure(design, behaviour, measured));

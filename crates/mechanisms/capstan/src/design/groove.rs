@@ -7,7 +7,7 @@ use forcewright_elements::grooves::{Groove, Pressure};
 use super::{place_of, si};
 use crate::spec::Spec;
 
-/// Radius of a round seat over the diameter of a new cable (`unirope-grooves`).
+/// Radius of a round seat over the diameter of a new cable (`feyrer-2015`: the endurance is largest there).
 const SEAT_RADIUS: f64 = 0.53;
 
 /// The section of a groove.
