@@ -90,6 +90,15 @@ impl Bundle {
         if let Some(capacity_n) = capacity_n.filter(|capacity_n| force_n.abs() > *capacity_n) {
             return Err(WrapError::GrossSlip { capacity_n });
         }
+        // Equal cables share it equally.
+        if let [first, rest @ ..] = self.cables.as_slice()
+            && rest.iter().all(|cable| cable == first)
+        {
+            let count = self.cables.len() as f64;
+            let state = first.at_force(force_n / count)?;
+            let (displacement_m, tangent_n_per_m) = (state.displacement_m, count * state.tangent_n_per_m);
+            return Ok(BundleState { displacement_m, force_n, tangent_n_per_m, cables: vec![state; self.cables.len()] });
+        }
         // No cable is stiffer than at rest.
         let least_m = force_n.abs() / self.cables.iter().map(Drive::initial_n_per_m).sum::<f64>();
         let value = |size_m: f64| {

@@ -10,6 +10,9 @@ use super::{WrapError, finite, increasing_root};
 /// Tension below which a side counts as loose, over the preload: `exp(−27.6)` is 1e-12.
 const LOOSE_LOG: f64 = -27.6;
 
+/// Tension above which a side is far from loose, over the preload: `exp(−10)`.
+const TAUT_LOG: f64 = -10.0;
+
 /// Cycles after which a loop must have closed.
 const LONGEST_SETTLING: usize = 50;
 
@@ -104,7 +107,9 @@ impl Ahead<'_> {
     }
 
     /// The logarithm of the tension at which the side has an elongation; the loosest if there is none.
-    fn log_at(&self, elongation_m: f64) -> f64 {
+    ///
+    /// `guess` is where it may be; it changes the last digit only.
+    fn log_at(&self, elongation_m: f64, guess: Option<f64>) -> f64 {
         let missing_m = elongation_m - self.elongation_m;
         if missing_m == 0.0 {
             return self.from;
@@ -112,10 +117,11 @@ impl Ahead<'_> {
         // The span alone gives the largest change of the tension.
         let bound = exp(self.from) + missing_m / self.span_m;
         let (low, high) = if missing_m > 0.0 { (self.from, ln(bound)) } else { (LOOSE_LOG, self.from) };
-        if missing_m < 0.0 && self.elongation_m(LOOSE_LOG).0 >= elongation_m {
+        // With a guess well inside, the side is not loose.
+        if missing_m < 0.0 && guess.is_none_or(|log| log < TAUT_LOG) && self.elongation_m(LOOSE_LOG).0 >= elongation_m {
             return LOOSE_LOG;
         }
-        let start = if bound > 0.0 { ln(bound) } else { 0.5 * (low + high) };
+        let start = guess.unwrap_or_else(|| if bound > 0.0 { ln(bound) } else { 0.5 * (low + high) });
         increasing_root(|log| self.missing(log, elongation_m), low, high, start)
     }
 
@@ -278,7 +284,7 @@ impl History {
         finite("displacement_m", displacement_m)?;
         let inputs = self.inputs();
         let sides = self.ahead(&inputs);
-        let (step, logs) = self.step_to(&sides, displacement_m);
+        let (step, logs) = self.step_to(&sides, displacement_m, [None; 2]);
         let slide_m = if step.gross_slip { displacement_m - sides[0].elongation_m(logs[0]).0 - self.slide_m } else { 0.0 };
         self.friction_j += slide_m.abs() * step.force_n.abs();
         self.slide_m += slide_m;
@@ -301,22 +307,35 @@ impl History {
     /// # }).expect("a drive");
     /// let mut history = History::new(&drive).expect("finite wraps");
     /// let ahead = history.along(&[50e-6, 100e-6]).expect("finite");
-    /// assert_eq!(ahead[1], history.move_to(100e-6).expect("finite"));
+    /// let there = history.move_to(100e-6).expect("finite");
+    /// assert!((ahead[1].force_n / there.force_n - 1.0).abs() < 1e-12);
     /// ```
     pub fn along(&self, displacements_m: &[f64]) -> Result<Vec<Step>, WrapError> {
         let inputs = self.inputs();
         let sides = self.ahead(&inputs);
-        let one = |displacement_m: &f64| {
+        let mut steps: Vec<Step> = Vec::with_capacity(displacements_m.len());
+        // Places are mostly given in their order: the tensions of the last two tell where to look for the next.
+        let mut last: [Option<(f64, [f64; 2])>; 2] = [None; 2];
+        for displacement_m in displacements_m {
             finite("displacement_m", *displacement_m)?;
-            Ok(self.step_to(&sides, *displacement_m).0)
-        };
-        displacements_m.iter().map(one).collect()
+            let guess = match last {
+                [Some((before_m, before)), Some((there_m, there))] if there_m != before_m => {
+                    let ahead = (displacement_m - there_m) / (there_m - before_m);
+                    [0, 1].map(|k| Some(there[k] + ahead * (there[k] - before[k])))
+                }
+                _ => [None; 2],
+            };
+            let (step, logs) = self.step_to(&sides, *displacement_m, guess);
+            last = [last[1], (!step.gross_slip && !step.loose).then_some((*displacement_m, logs))];
+            steps.push(step);
+        }
+        Ok(steps)
     }
 
     /// The step to a displacement, m, and the logarithms of its tensions.
-    fn step_to(&self, sides: &[Ahead<'_>; 2], displacement_m: f64) -> (Step, [f64; 2]) {
+    fn step_to(&self, sides: &[Ahead<'_>; 2], displacement_m: f64, guess: [Option<f64>; 2]) -> (Step, [f64; 2]) {
         let wanted_m = displacement_m - self.slide_m;
-        let mut logs = [sides[0].log_at(wanted_m), sides[1].log_at(-wanted_m)];
+        let mut logs = [sides[0].log_at(wanted_m, guess[0]), sides[1].log_at(-wanted_m, guess[1])];
         let over = (logs[0] - logs[1]).abs() > self.shared();
         if over {
             logs = self.slipping(sides, logs[0] > logs[1], logs);
