@@ -70,7 +70,8 @@ fn behaviour(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_count = 50)]
 fn solve_with_report(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| {
-        let loaded = Loaded::from_text("longval.toml", black_box(text()), &Choices::default()).map_err(|e| e.render(false)).expect("understood");
+        let loaded =
+            Loaded::from_text("longval.toml", black_box(text()), &Choices::default()).map_err(|e| e.render(false)).expect("understood");
         let report = loaded.solve("longval.toml", "", &mut |_| true);
         forcewright::report::html::page(&report)
     });

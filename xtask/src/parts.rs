@@ -86,13 +86,14 @@ fn samples(workspace: &Workspace, steps: &mut Steps) -> Option<(PathBuf, PathBuf
     folders
 }
 
-/// Projects whose parts are read in a CAD kernel: outlines of beams and of cams.
-const PROJECTS: [&str; 5] = [
+/// Projects whose parts are read in a CAD kernel: outlines of beams and of cams, grooved drums.
+const PROJECTS: [&str; 6] = [
     "examples/compliant/lan-table3.toml",
     "examples/compliant/lan-end-effector.toml",
     "examples/cam/no-undercut.toml",
     "examples/cam/push-springs.toml",
     "examples/cam/torque-cam.toml",
+    "examples/capstan/longval.toml",
 ];
 
 const EXAMPLE: [&str; 6] = ["run", "--package", "forcewright-fabricate", "--example", "samples", "--"];

@@ -144,6 +144,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0704", "a warning of the analysis"),
     ("W0705", "a warning of the analysis"),
     ("W0706", "a warning of the analysis"),
+    ("E0730", "a drum that cannot be turned: tests of the family"),
+    ("E0731", "grooves on one stretch of a drum: tests of the family"),
 ];
 
 /// Edits of the cam example and the code that each must bring.

@@ -130,7 +130,9 @@ fn written_back<M: Mechanism>(example: &str, numbers: &[Number]) {
         // What the catalogue gives may follow from the number: a cable's strength from its diameter.
         let rows = rows_of(&mut spec);
         let derived = |n: &Number| rows.iter().any(|r| r.path == n.path && r.origin.starts_with("catalogue"));
-        let same = |n: &Number| n.path == number.path || derived(n) || numbers.iter().any(|old| old.path == n.path && old.si.to_bits() == n.si.to_bits());
+        let same = |n: &Number| {
+            n.path == number.path || derived(n) || numbers.iter().any(|old| old.path == n.path && old.si.to_bits() == n.si.to_bits())
+        };
         let kept = number.range.holds(si).then(|| found.iter().find(|n| !same(n))).flatten();
         assert!(kept.is_none(), "with `{}` another number changes: {kept:?}", number.path);
     }

@@ -63,7 +63,15 @@ fn loops_work_as_much_as_friction_takes() {
         let n = 4000;
         let places: Vec<f64> = (0..=n).map(|i| from_m + (to_m - from_m) * f64::from(i) / f64::from(n)).collect();
         let steps = history.along(&places).expect("finite");
-        let weight = |i: usize| if i == 0 || i == n as usize { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+        let weight = |i: usize| {
+            if i == 0 || i == n as usize {
+                1.0
+            } else if i % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            }
+        };
         steps.iter().enumerate().map(|(i, s)| weight(i) * s.force_n).sum::<f64>() * (to_m - from_m) / (3.0 * f64::from(n))
     };
     let back_j = work(&history, high_m, low_m);

@@ -144,14 +144,23 @@ impl Exported {
                 rows: sheet.rows.clone(),
             })
             .collect();
+        let is_turned = set.parts.iter().any(|part| part.turned().is_some());
         page(&StudyPage {
             kind: if set.parts.len() == 1 { "Part" } else { "Parts" }.to_owned(),
             title: self.title.clone(),
             facts: vec![("Project file".to_owned(), input_name.to_owned())],
             verdict: self.verdict(),
             sections: [
-                StudySection { id: "part", title: "As it is cut", parts: vec![StudyPart::Figure(Box::new(figure(set)))] },
-                StudySection { id: "measures", title: "Measures", parts: vec![table("Measures of the outline", &measures, rows)] },
+                StudySection {
+                    id: "part",
+                    title: if is_turned { "As it is made" } else { "As it is cut" },
+                    parts: vec![StudyPart::Figure(Box::new(figure(set)))],
+                },
+                StudySection {
+                    id: "measures",
+                    title: "Measures",
+                    parts: vec![table(if is_turned { "Measures of the parts" } else { "Measures of the outline" }, &measures, rows)],
+                },
                 StudySection { id: "process", title: "Can it be made?", parts: made },
                 StudySection { id: "sheets", title: "Sheets", parts: sheets },
                 StudySection {

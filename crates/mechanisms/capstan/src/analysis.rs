@@ -180,7 +180,10 @@ fn slip_used(built: &Built, behaviour: &Behaviour, slip_rad: &[[f64; 2]; 2]) -> 
 
 fn measure_losses(m: &mut Measured, built: &Built, behaviour: &Behaviour) {
     let [input, output] = built.inertia_kg_m2;
-    m.set("reflected_inertia_output", input.map(|i| i * built.ratio() * built.ratio() + output.unwrap_or(0.0)).filter(|_| output.is_some()));
+    m.set(
+        "reflected_inertia_output",
+        input.map(|i| i * built.ratio() * built.ratio() + output.unwrap_or(0.0)).filter(|_| output.is_some()),
+    );
     let at_rest: Vec<[f64; 2]> = built.cables.iter().map(|c| [c.preload_left_n(built); 2]).collect();
     let loaded = behaviour.at_torque().map_or(0.0, |l| shaft_load_n(&l.tensions_n, behaviour.span()));
     m.set("shaft_load", shaft_load_n(&at_rest, behaviour.span()).max(loaded));
@@ -229,12 +232,16 @@ fn measure_cables(m: &mut Measured, built: &Built, behaviour: &Behaviour) {
     let drum_m = 2.0 * built.radii_m[0].min(built.radii_m[1]);
     m.set("bending_ratio", drum_m / built.cable_m());
     let stress = |c: &crate::design::Cable| Some(wire_bending_stress_pa(c.wire_pa?, c.wire_m?, drum_m));
-    m.set("wire_bending_stress", built.cables.iter().map(stress).collect::<Option<Vec<_>>>().and_then(|all| all.into_iter().reduce(f64::max)));
+    m.set(
+        "wire_bending_stress",
+        built.cables.iter().map(stress).collect::<Option<Vec<_>>>().and_then(|all| all.into_iter().reduce(f64::max)),
+    );
     let taut = behaviour.at_torque().map(|l| l.tensions_n.iter().map(|t| t[0].max(t[1])).collect::<Vec<_>>());
     let factor = |(cable, taut_n): (&crate::design::Cable, f64)| Some(cable.breaking_n? * kept(built, cable, drum_m)? / taut_n);
     m.set(
         "cable_safety_factor",
-        taut.and_then(|taut| built.cables.iter().zip(taut).map(factor).collect::<Option<Vec<_>>>()).and_then(|all| all.into_iter().reduce(f64::min)),
+        taut.and_then(|taut| built.cables.iter().zip(taut).map(factor).collect::<Option<Vec<_>>>())
+            .and_then(|all| all.into_iter().reduce(f64::min)),
     );
 }
 

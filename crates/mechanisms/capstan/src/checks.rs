@@ -116,7 +116,10 @@ impl Context<'_> {
                 format!("the cables slip over the whole input drum from {} on", self.torque(capacity_n * lever_m))
             }
             WrapError::Slack { limit_n } => {
-                format!("in the paper's model the slack side is loose from {} on", self.torque(limit_n * self.design.built.cables.len() as f64 * lever_m))
+                format!(
+                    "in the paper's model the slack side is loose from {} on",
+                    self.torque(limit_n * self.design.built.cables.len() as f64 * lever_m)
+                )
             }
             other => other.to_string(),
         }
@@ -136,7 +139,8 @@ impl Context<'_> {
         let basis = "gross slip: ln(T_taut/T_slack) = μΘ on the input drum, both sides with one displacement; in the paper's model 2 T_p tanh(μΘ/2)";
         let missing = "fastened cables do not slip as a whole; see the slack side".to_owned();
         let limit = Some(requirements.torque_nm);
-        Comparison { limit, sense: Sense::AtLeast, fix, missing, basis: basis.to_owned(), required: !self.design.built.fastened, ..base }.judge()
+        Comparison { limit, sense: Sense::AtLeast, fix, missing, basis: basis.to_owned(), required: !self.design.built.fastened, ..base }
+            .judge()
     }
 
     /// CAPS002: tangent stiffness at the output.
@@ -162,14 +166,18 @@ impl Context<'_> {
         let at = |factor: f64| {
             let mut built = self.design.built.clone();
             built.cables.iter_mut().for_each(|c| c.preload_n *= factor);
-            let statics = Statics::new(&built, &built.place(&self.behaviour.geometry, built.middle_wraps_rad()), self.design.source).ok()?;
+            let statics =
+                Statics::new(&built, &built.place(&self.behaviour.geometry, built.middle_wraps_rad()), self.design.source).ok()?;
             Some(statics.torsional(statics.under(torque_nm).ok()?.tangent_n_per_m, 1))
         };
         let gap = |log: f64| at(forcewright_base::maths::exp(log)).unwrap_or(0.0) - wanted;
         match root(gap, 0.0, forcewright_base::maths::ln(MOST_PRELOAD), 1e-6) {
             Ok(log) => {
                 let factor = forcewright_base::maths::exp(log);
-                format!("a preload {} times as high gives it; a shorter span, more cables or grooves with more friction help too", format_number(1.0005 * factor, 4))
+                format!(
+                    "a preload {} times as high gives it; a shorter span, more cables or grooves with more friction help too",
+                    format_number(1.0005 * factor, 4)
+                )
             }
             Err(_) => "more preload alone does not give it: use shorter spans, a stiffer cable or more cables".to_owned(),
         }
@@ -180,10 +188,16 @@ impl Context<'_> {
         let limit = requirements.lost_motion_rad?;
         let base = self.base("CAPS003", "lost_motion", "Lost motion", "lost_motion_output");
         let fix = base.value.map_or_else(String::new, |value| {
-            format!("it falls about as the preload rises: {} times as much; more friction and a stiffer cable help in the same way", format_number(value / limit, 3))
+            format!(
+                "it falls about as the preload rises: {} times as much; more friction and a stiffer cable help in the same way",
+                format_number(value / limit, 3)
+            )
         });
-        let missing =
-            if self.design.source == Source::Paper { "the paper's model has no unloading: use `model.source = \"corrected\"`".to_owned() } else { self.missing() };
+        let missing = if self.design.source == Source::Paper {
+            "the paper's model has no unloading: use `model.source = \"corrected\"`".to_owned()
+        } else {
+            self.missing()
+        };
         Some(Comparison { limit: Some(limit), fix, missing, ..base }.judge())
     }
 
@@ -215,7 +229,9 @@ impl Context<'_> {
                 "give `inertia.input` and `inertia.output`".to_owned()
             }
             "wire_bending_stress" => "give `wire_diameter` and `wire_modulus` of the cables".to_owned(),
-            "cable_safety_factor" if built.cables.iter().any(|c| c.breaking_n.is_none()) => "give `breaking_force` of the cables".to_owned(),
+            "cable_safety_factor" if built.cables.iter().any(|c| c.breaking_n.is_none()) => {
+                "give `breaking_force` of the cables".to_owned()
+            }
             "gross_slip_torque_output" => "fastened cables do not slip as a whole".to_owned(),
             _ => self.missing(),
         }
@@ -230,11 +246,25 @@ impl Context<'_> {
         let base = self.base("CAPS005", "strength", "Strength of the cables", "cable_safety_factor");
         let limit = wanted.unwrap_or(1.0);
         let fix = base.value.map_or_else(String::new, |value| {
-            format!("the strength grows as the square of the diameter: {} times as thick a cable, or less preload", format_number((limit / value).sqrt(), 3))
+            format!(
+                "the strength grows as the square of the diameter: {} times as thick a cable, or less preload",
+                format_number((limit / value).sqrt(), 3)
+            )
         });
         let basis = "breaking force over the largest tension under the required torque, of steel less what bending takes; without `requirements.safety_factor` against 1, where it breaks";
         let missing = self.missing_metric("cable_safety_factor");
-        Some(Comparison { required: wanted.is_some(), limit: Some(limit), sense: Sense::AtLeast, fix, missing, basis: basis.to_owned(), ..base }.judge())
+        Some(
+            Comparison {
+                required: wanted.is_some(),
+                limit: Some(limit),
+                sense: Sense::AtLeast,
+                fix,
+                missing,
+                basis: basis.to_owned(),
+                ..base
+            }
+            .judge(),
+        )
     }
 
     /// CAPS006: drum over cable diameter.
@@ -244,7 +274,10 @@ impl Context<'_> {
         let base = self.base("CAPS006", "bending", "Drum diameter over cable diameter", "bending_ratio");
         let fix = limit.map_or_else(String::new, |limit| {
             let cable_m = self.design.built.cable_m();
-            format!("the wires tire early: drums of at least {} to the middle of the cable, or a cable of finer wires", self.length(limit * cable_m))
+            format!(
+                "the wires tire early: drums of at least {} to the middle of the cable, or a cable of finer wires",
+                self.length(limit * cable_m)
+            )
         });
         let missing = "give `min_bend_ratio` of the cables".to_owned();
         let basis = "D/d of the smaller drum against the least ratio of the construction (maker's data)";
@@ -261,7 +294,10 @@ impl Context<'_> {
         // A loose side carries exactly nothing.
         let loose = base.value.is_some_and(|n| n <= 0.0);
         let value = if loose { Some(-f64::MIN_POSITIVE) } else { base.value };
-        Some(Comparison { required: false, value, limit: Some(0.0), sense: Sense::AtLeast, scale, fix, basis: basis.to_owned(), ..base }.judge())
+        Some(
+            Comparison { required: false, value, limit: Some(0.0), sense: Sense::AtLeast, scale, fix, basis: basis.to_owned(), ..base }
+                .judge(),
+        )
     }
 
     /// CAPS008: slip ends before the terminations.
@@ -270,7 +306,10 @@ impl Context<'_> {
         let base = self.base("CAPS008", "termination", "Slip ends before the terminations", "output_wrap_min");
         let needed = self.measured.get("slip_angle_slack").into_iter().chain(self.measured.get("slip_angle_taut")).fold(0.0, f64::max);
         let unit = &self.design.units.angle;
-        let fix = format!("the anchor carries part of the change of the tension: `output_anchor_wrap` of at least {}", format_si(needed, unit, 4));
+        let fix = format!(
+            "the anchor carries part of the change of the tension: `output_anchor_wrap` of at least {}",
+            format_si(needed, unit, 4)
+        );
         let basis = "smallest wrap before a termination over the travel against the largest slip angle under the required torque";
         Some(Comparison { required: false, limit: Some(needed), sense: Sense::AtLeast, fix, basis: basis.to_owned(), ..base }.judge())
     }
@@ -280,7 +319,10 @@ impl Context<'_> {
         let base = self.base("CAPS009", "fleet", "Fleet angle", "fleet_angle");
         let built = &self.design.built;
         let distance = self.behaviour.geometry.aligned_distances(0.9 * built.distance_m, 1.2 * built.distance_m).unwrap_or_default();
-        let nearest = distance.into_iter().map(|a| a.centre_distance_m).min_by(|a, b| (a - built.distance_m).abs().total_cmp(&(b - built.distance_m).abs()));
+        let nearest = distance
+            .into_iter()
+            .map(|a| a.centre_distance_m)
+            .min_by(|a, b| (a - built.distance_m).abs().total_cmp(&(b - built.distance_m).abs()));
         let phase = self.behaviour.geometry.aligning_phase_rad(0).ok();
         let mut fix = "the cable climbs out of its groove".to_owned();
         if let Some(distance_m) = nearest {
@@ -299,12 +341,27 @@ impl Context<'_> {
         let cable_m = self.design.built.cable_m();
         let nearest = self.behaviour.neighbours.first();
         let fix = match nearest {
-            Some(nearest) if nearest.pitches < 0.5 => "two turns meet on one groove: place the cables on other lines, with fewer turns or less travel".to_owned(),
-            _ => format!("a pitch of at least {} keeps them apart", self.length(self.design.built.pitch_m + (-base.value.unwrap_or(0.0)).max(0.0) + 0.05 * cable_m)),
+            Some(nearest) if nearest.pitches < 0.5 => {
+                "two turns meet on one groove: place the cables on other lines, with fewer turns or less travel".to_owned()
+            }
+            _ => format!(
+                "a pitch of at least {} keeps them apart",
+                self.length(self.design.built.pitch_m + (-base.value.unwrap_or(0.0)).max(0.0) + 0.05 * cable_m)
+            ),
         };
         let basis = "smallest gap between the surfaces of neighbouring turns and of passing spans over the travel; the margin is relative to the cable's diameter";
         let missing = "no turn has a neighbour".to_owned();
-        Comparison { required: false, limit: Some(0.0), sense: Sense::AtLeast, scale: Some(cable_m), fix, missing, basis: basis.to_owned(), ..base }.judge()
+        Comparison {
+            required: false,
+            limit: Some(0.0),
+            sense: Sense::AtLeast,
+            scale: Some(cable_m),
+            fix,
+            missing,
+            basis: basis.to_owned(),
+            ..base
+        }
+        .judge()
     }
 
     /// CAPS011: grooves do not run into each other.
@@ -316,9 +373,23 @@ impl Context<'_> {
         let width_m = built.seat.width_for_m(built.cable_m());
         let apart_m = self.behaviour.geometry.groove_distance_m().unwrap_or(f64::INFINITY).min(built.pitch_m);
         let base = self.base("CAPS011", "grooves", "Grooves do not run into each other", "rope_clearance");
-        let fix = format!("the land between two grooves is gone: a pitch of at least {}, or shallower grooves", self.length(built.pitch_m * width_m / apart_m));
+        let fix = format!(
+            "the land between two grooves is gone: a pitch of at least {}, or shallower grooves",
+            self.length(built.pitch_m * width_m / apart_m)
+        );
         let basis = "smallest axial distance of different grooves on a drum against the width of a groove at the surface";
-        Some(Comparison { required: false, value: Some(apart_m), limit: Some(width_m), sense: Sense::AtLeast, fix, basis: basis.to_owned(), ..base }.judge())
+        Some(
+            Comparison {
+                required: false,
+                value: Some(apart_m),
+                limit: Some(width_m),
+                sense: Sense::AtLeast,
+                fix,
+                basis: basis.to_owned(),
+                ..base
+            }
+            .judge(),
+        )
     }
 
     /// CAPS012: a round seat that fits the cable.
@@ -341,7 +412,16 @@ impl Context<'_> {
         let cable_m = self.design.built.cable_m();
         let fix = format!("a centre distance of at least {}", self.length(self.design.built.distance_m - gap_m));
         let basis = "gap between the cables on both drums on the line of centres; the margin is relative to the cable's diameter";
-        Comparison { required: false, value: Some(gap_m), limit: Some(0.0), sense: Sense::AtLeast, scale: Some(cable_m), fix, basis: basis.to_owned(), ..base }
-            .judge()
+        Comparison {
+            required: false,
+            value: Some(gap_m),
+            limit: Some(0.0),
+            sense: Sense::AtLeast,
+            scale: Some(cable_m),
+            fix,
+            basis: basis.to_owned(),
+            ..base
+        }
+        .judge()
     }
 }

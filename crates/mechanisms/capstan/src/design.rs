@@ -343,7 +343,10 @@ fn check(spec: &Spec, built: &Built, source: Source, diagnostics: &mut Diagnosti
         }
     }
     let first = &built.cables[0];
-    let equal = built.cables.iter().all(|c| c.axial_stiffness_n == first.axial_stiffness_n && c.preload_left_n(built) == first.preload_left_n(built));
+    let equal = built
+        .cables
+        .iter()
+        .all(|c| c.axial_stiffness_n == first.axial_stiffness_n && c.preload_left_n(built) == first.preload_left_n(built));
     if source == Source::Paper && !equal {
         let at = span_of(spec.model.source.as_ref(), spec);
         diagnostics.push(

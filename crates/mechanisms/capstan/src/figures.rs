@@ -175,7 +175,10 @@ fn loop_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> O
     plot.from_zero = false;
     let joule = Unit::parse("mJ").unwrap_or_else(|_| Unit::si(Dimension::Energy));
     let lost = measured.get("lost_motion_output").map_or_else(String::new, |rad| format_si(rad, &design.units.small_angle, 3));
-    let caption = format!("The closed loop between the required torque one way and the other: {lost} of lost motion at zero torque, {} a cycle.", format_si(cycle.lost_j, &joule, 3));
+    let caption = format!(
+        "The closed loop between the required torque one way and the other: {lost} of lost motion at zero torque, {} a cycle.",
+        format_si(cycle.lost_j, &joule, 3)
+    );
     Some(figure("loop", "Torque and turn, there and back", caption, FigureContent::Plot(plot)))
 }
 
@@ -197,7 +200,8 @@ fn tension_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
     plot.spans.extend(along.spans().into_iter().map(|(from, to, label)| forcewright_model::VerticalSpan { from, to, label }));
     let torque = format_si(loaded.torque_nm, &design.units.torque, 4);
     let which = if design.built.cables.len() > 1 { "the first cable" } else { "the cable" };
-    let caption = format!("Tension along {which} under {torque}, in the middle of the travel: where it is level on a drum, the cable sticks.");
+    let caption =
+        format!("Tension along {which} under {torque}, in the middle of the travel: where it is level on a drum, the cable sticks.");
     Some(figure("tension", "Tension along the cable", caption, FigureContent::Plot(plot)))
 }
 
@@ -230,7 +234,8 @@ fn alignment_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
         let mut other = built.clone();
         other.distance_m = distance_m;
         // Another centre distance may ask for another line; the mismatch is counted from these all the same.
-        let drive = crate::geometry::Drive::new(crate::geometry::Layout { surface: crate::geometry::Surface::Flat, ..other.layout() }).ok()?;
+        let drive =
+            crate::geometry::Drive::new(crate::geometry::Layout { surface: crate::geometry::Surface::Flat, ..other.layout() }).ok()?;
         let ours = behaviour.geometry.landing_pitches();
         Some(behaviour.geometry.mismatch_pitches(0).ok()? + drive.landing_pitches() - ours)
     };
@@ -262,7 +267,11 @@ fn alignment_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
         let _ = write!(caption, " It is exactly in line with a groove at {}.", exact.join(", "));
     }
     if let Ok(phase) = behaviour.geometry.aligning_phase_rad(0) {
-        let _ = write!(caption, " At the centre distance given a second group of grooves turned by {} is in line.", format_si(phase, &design.units.angle, 4));
+        let _ = write!(
+            caption,
+            " At the centre distance given a second group of grooves turned by {} is in line.",
+            format_si(phase, &design.units.angle, 4)
+        );
     }
     Some(figure("alignment", "Alignment of the grooves", caption, FigureContent::Plot(plot)))
 }

@@ -121,7 +121,9 @@ fn drive(design: &Design, distance_mm: f64, ratio: u32) -> Option<Drive> {
     let layout = layout(design, distance_mm);
     let of_ratio = Layout { output_radius_m: layout.input_radius_m * f64::from(ratio), starts: ratio, ..layout };
     match Drive::new(of_ratio.clone()) {
-        Err(GeometryError::Lines { nearest, .. }) => Drive::new(Layout { cables: vec![[0, i32::try_from(nearest).ok()?]], ..of_ratio }).ok(),
+        Err(GeometryError::Lines { nearest, .. }) => {
+            Drive::new(Layout { cables: vec![[0, i32::try_from(nearest).ok()?]], ..of_ratio }).ok()
+        }
         drive => drive.ok(),
     }
 }

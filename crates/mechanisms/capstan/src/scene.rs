@@ -48,7 +48,9 @@ pub(crate) fn drive(design: &Design, behaviour: &Behaviour, axis: Axis) -> Optio
         scale: Some(ColourScale { label: "T".to_owned(), display: design.units.force.clone(), max: most_n, limit: None }),
         words: ["as made", "moved"],
         display: design.units.length.clone(),
-        description: "Two drums seen along their axes and the cable around them, coloured by its tension, with the zones in which it slips.".to_owned(),
+        description:
+            "Two drums seen along their axes and the cable around them, coloured by its tension, with the zones in which it slips."
+                .to_owned(),
     };
     let torque_nm = design.requirements.as_ref().map_or(f64::INFINITY, |r| r.torque_nm);
     let chosen = frames.iter().rposition(|f: &Frame| f.at <= torque_nm * 1.001).unwrap_or(frames.len() / 2);
@@ -112,7 +114,8 @@ fn slip_zones(centre: &CentreLine, along: &Along, cable_m: f64) -> Vec<Item> {
             return None;
         }
         let sense = helix.sweep_rad.signum();
-        let (from_rad, sweep_rad) = if at_end { (helix.start_rad + helix.sweep_rad, -sense * angle_rad) } else { (helix.start_rad, sense * angle_rad) };
+        let (from_rad, sweep_rad) =
+            if at_end { (helix.start_rad + helix.sweep_rad, -sense * angle_rad) } else { (helix.start_rad, sense * angle_rad) };
         let near_m = helix.radius_m + 1.6 * cable_m;
         let far_m = near_m + 1.2 * cable_m * angle_rad / TAU;
         let look = if text.starts_with("slip of the taut") { Look::Limit } else { Look::Track };
@@ -177,7 +180,8 @@ pub(crate) fn drums(design: &Design, behaviour: &Behaviour) -> Option<Film> {
         display: design.units.length.clone(),
         description: "Both drums in space with their cables, which wind from one to the other as the output turns.".to_owned(),
     };
-    let axis = Axis { name: "output", label: "Turn of the output".to_owned(), dimension: Dimension::Angle, display: design.units.angle.clone() };
+    let axis =
+        Axis { name: "output", label: "Turn of the output".to_owned(), dimension: Dimension::Angle, display: design.units.angle.clone() };
     (!frames.is_empty()).then(|| Film { axis, stage, chosen: frames.len() / 2, frames })
 }
 

@@ -154,8 +154,10 @@ pub(crate) const BELTS: &[Word] = &[
     Word { word: "open", doc: "outside the drums: they turn in the same direction" },
 ];
 /// Hand of the helix on the input drum.
-pub(crate) const HANDS: &[Word] =
-    &[Word { word: "right", doc: "as a common screw; the output of a crossed drive is left-handed" }, Word { word: "left", doc: "the mirror image" }];
+pub(crate) const HANDS: &[Word] = &[
+    Word { word: "right", doc: "as a common screw; the output of a crossed drive is left-handed" },
+    Word { word: "left", doc: "the mirror image" },
+];
 /// Sections of grooves.
 pub(crate) const PROFILES: &[Word] = &[
     Word { word: "flat", doc: "a smooth drum" },
@@ -263,7 +265,8 @@ impl Describe for LostMotionRequirement {
 
 impl Describe for Environment {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        let doc = "How much warmer it is than when the preload was set; drums and frame expand with `design.expansion`, cables with their own.";
+        let doc =
+            "How much warmer it is than when the preload was set; drums and frame expand with `design.expansion`, cables with their own.";
         let change = Param::new("temperature_change", doc).of(Dimension::TemperatureDifference).within(-300.0, 300.0).default("0 K");
         v.quantity(&change, &mut self.temperature_change);
     }
@@ -285,7 +288,8 @@ impl Describe for Design {
         self.groove.describe(v, &Param::new("groove", "Section of the grooves, on both drums.").required());
         let doc = "Number S of helices on the output drum; by default the whole number next to the ratio of the radii.";
         v.count(&Param::new("starts", doc).within(1.0, MOST_STARTS), &mut self.starts);
-        let doc = "By how much the second group of output grooves is turned against the first, in the sense that a shift by one groove is 2π/S.";
+        let doc =
+            "By how much the second group of output grooves is turned against the first, in the sense that a shift by one groove is 2π/S.";
         v.quantity(&angle("groove_phase", doc).within(-7.0, 7.0).default("0 deg"), &mut self.groove_phase);
         let setting = Param::new("input_setting", "How the input drum is set along its axis.").default("shared");
         v.choice(&setting, SETTINGS, &mut self.input_setting);
@@ -311,11 +315,17 @@ impl Describe for Groove {
         let part = |key, doc| angle(key, doc).above(0.0, std::f64::consts::PI);
         v.quantity(&part("seat_angle", "Round: angle over which the seat touches the cable, both halves together."), &mut self.seat_angle);
         v.choice(&Param::new("pressure", "Round: pressure over the seat.").default("cosine"), PRESSURES, &mut self.pressure);
-        let table = Param::new("pressure_table", "Pressure over the angle from the bottom, `[[\"0 deg\", 1], [\"60 deg\", 0.5]]`; its size does not matter.");
+        let table = Param::new(
+            "pressure_table",
+            "Pressure over the angle from the bottom, `[[\"0 deg\", 1], [\"60 deg\", 0.5]]`; its size does not matter.",
+        );
         v.pairs(&table.within(0.0, 1e12), Dimension::Angle, MOST_POINTS, &mut self.pressure_table);
         v.quantity(&part("angle", "V: angle between the flanks."), &mut self.angle);
         v.quantity(&part("undercut", "Undercut: angle over which the bottom of the seat is cut out."), &mut self.undercut);
-        v.quantity(&length("radius", "Round: radius of the seat; by default 0.53 of the cable's diameter.").above(0.0, 1.0), &mut self.radius);
+        v.quantity(
+            &length("radius", "Round: radius of the seat; by default 0.53 of the cable's diameter.").above(0.0, 1.0),
+            &mut self.radius,
+        );
         v.quantity(&length("depth", "Depth of the groove; by default what its seat needs.").above(0.0, 1.0), &mut self.depth);
     }
 }
@@ -331,7 +341,10 @@ impl Describe for Cable {
         let doc = "Least ratio of the drum's diameter, to the middle of the cable, to that of the cable.";
         v.quantity(&Param::new("min_bend_ratio", doc).above(0.0, 1e3), &mut self.min_bend_ratio);
         v.quantity(&length("wire_diameter", "Diameter of its outer wires.").above(0.0, 0.1), &mut self.wire_diameter);
-        v.quantity(&Param::new("wire_modulus", "Young's modulus of the wires.").of(Dimension::Stress).above(0.0, 1e13), &mut self.wire_modulus);
+        v.quantity(
+            &Param::new("wire_modulus", "Young's modulus of the wires.").of(Dimension::Stress).above(0.0, 1e13),
+            &mut self.wire_modulus,
+        );
         let expansion = Param::new("expansion", "Thermal expansion along the cable.").of(Dimension::ThermalExpansion);
         v.quantity(&expansion.within(-1e-4, 1e-3), &mut self.expansion);
         let doc = "Part of its tension that the cable loses where it is bent round the input drum and straightened again; on the output drum less by the ratio of the radii.";

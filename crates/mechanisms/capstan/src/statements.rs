@@ -20,13 +20,17 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Status {
     let torque = |nm: f64| format_si(nm, &design.units.torque, 4);
     let complete = |message: String| Status { kind: StatusKind::Complete, message, advice: None };
     match (&behaviour.required, &design.requirements) {
-        (Some(Ok(loaded)), _) => complete(format!("computed from rest to {}, and the loop between that torque both ways", torque(loaded.torque_nm))),
+        (Some(Ok(loaded)), _) => {
+            complete(format!("computed from rest to {}, and the loop between that torque both ways", torque(loaded.torque_nm)))
+        }
         (Some(Err(error)), Some(requirements)) => {
             let most = behaviour.stations.last().map_or(0.0, |s| s.torque_nm);
             Status {
                 kind: StatusKind::NoEquilibriumBeyond,
                 message: format!("computed up to {}; {} is not held: {error}", torque(most), torque(requirements.torque_nm)),
-                advice: Some("raise `preload`, `extra_turns` or `friction`, or fasten the cables with `input_hold = \"fastened\"`".to_owned()),
+                advice: Some(
+                    "raise `preload`, `extra_turns` or `friction`, or fasten the cables with `input_hold = \"fastened\"`".to_owned(),
+                ),
             }
         }
         _ => {
@@ -43,7 +47,9 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
         Source::Corrected => {
             "Coulomb friction on both drums, dT/dθ = ±μT where the cable slips; both sides of each cable share one displacement, and all cables the same turn. Loops remember where the torque turned back. All in the middle of the travel."
         }
-        Source::Paper => "As Longval & Gosselin have it: both sides change their tension by half of the force, which is not compatible. Their tangent stiffness is also taken for the secant.",
+        Source::Paper => {
+            "As Longval & Gosselin have it: both sides change their tension by half of the force, which is not compatible. Their tangent stiffness is also taken for the secant."
+        }
     };
     let factor = format_number(built.groove_factor, 4);
     let seat = match &built.seat.groove {
@@ -71,10 +77,16 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
 /// What is not modelled.
 pub(crate) fn limits(design: &Design) -> Vec<Statement> {
     let mut all = vec![
-        statement("Cable", "Linear elastic, without weight and without bending stiffness: its stiffness is that after bedding in. One coefficient of friction for sticking and slipping; no creep but what `preload_loss` says."),
+        statement(
+            "Cable",
+            "Linear elastic, without weight and without bending stiffness: its stiffness is that after bedding in. One coefficient of friction for sticking and slipping; no creep but what `preload_loss` says.",
+        ),
         statement("Preload", "The same along the whole cable at rest: friction left from assembly is not modelled."),
         statement("Rigid parts", "Drums, shafts and bearings do not give way."),
-        statement("Life", "Broken wires and wear are not predicted: the ratio of diameters and the bending stress of the wires say what to expect."),
+        statement(
+            "Life",
+            "Broken wires and wear are not predicted: the ratio of diameters and the bending stress of the wires say what to expect.",
+        ),
     ];
     let unknown = unknown(&design.built);
     if !unknown.is_empty() {
@@ -91,7 +103,11 @@ pub(crate) fn sources(design: &Design) -> Vec<Citation> {
         used_for: "slip angles, elongations, stiffness, effective friction in grooves",
     }];
     if design.built.cables.iter().any(|c| c.wire_m.is_some() && c.breaking_n.is_some()) {
-        all.push(Citation { key: "sava-pulleys", text: "Carl Stahl Sava, technical information on pulleys", used_for: "strength of a bent cable" });
+        all.push(Citation {
+            key: "sava-pulleys",
+            text: "Carl Stahl Sava, technical information on pulleys",
+            used_for: "strength of a bent cable",
+        });
     }
     let mut keys: Vec<&'static str> = Vec::new();
     for key in design.built.cables.iter().flat_map(|c| c.sources.iter().copied()) {
@@ -119,12 +135,16 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
     if behaviour.at_torque().is_some_and(|l| l.at_end) || behaviour.reaches_end == Some(true) {
         all.push(Warning {
             code: "W0702",
-            message: "slip reaches a termination: there the drive is stiffer than on a longer wrap, and the anchor feels the load".to_owned(),
+            message: "slip reaches a termination: there the drive is stiffer than on a longer wrap, and the anchor feels the load"
+                .to_owned(),
         });
     }
     let unknown = unknown(built);
     if !unknown.is_empty() {
-        all.push(Warning { code: "W0703", message: format!("backdriving and efficiency are not assessed: not known are {}", unknown.join(", ")) });
+        all.push(Warning {
+            code: "W0703",
+            message: format!("backdriving and efficiency are not assessed: not known are {}", unknown.join(", ")),
+        });
     }
     if let Some(mismatch) = measured.get("alignment_mismatch").filter(|m| *m > 0.25) {
         all.push(Warning {

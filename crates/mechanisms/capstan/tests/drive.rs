@@ -128,14 +128,15 @@ fn cables_in_parallel() {
     assert!((2.5..4.0).contains(&gain), "{gain}");
     // The theory's example: × 3.33 at 5 N·m and × 3.57 at 10 N·m on smooth drums with 50 kN.
     for (torque, gain) in [(5.0, 3.33), (10.0, 3.57)] {
-        let (one, two) = ([one.clone(), two.clone()]).map(|mut d| {
-            d.built.groove_factor = 1.0;
-            d.built.helix_correction = false;
-            d.built.cables.iter_mut().for_each(|c| (c.axial_stiffness_n, c.preload_n) = (50e3, 200.0));
-            d.requirements.as_mut().expect("required").torque_nm = torque;
-            get(&solved(&d).1, "stiffness_tangent_output")
-        })
-        .into();
+        let (one, two) = ([one.clone(), two.clone()])
+            .map(|mut d| {
+                d.built.groove_factor = 1.0;
+                d.built.helix_correction = false;
+                d.built.cables.iter_mut().for_each(|c| (c.axial_stiffness_n, c.preload_n) = (50e3, 200.0));
+                d.requirements.as_mut().expect("required").torque_nm = torque;
+                get(&solved(&d).1, "stiffness_tangent_output")
+            })
+            .into();
         near(two / one, gain, 2e-3);
     }
 }
@@ -163,7 +164,8 @@ fn losses_have_closed_forms() {
     near(get(&measured, "efficiency_forward"), 1.0, 1e-12);
     near(get(&measured, "efficiency_backward"), 1.0, 1e-12);
     // Bearings alone, at rest: μ_b (D₁/2 R + D₂/2) 2T_p sin γ to first order; drags add R times that of the input.
-    let design = design(LONGVAL, &["design.cables.1.bending_loss=0 %", "design.bearings.input_drag=2 N*mm", "design.bearings.output_drag=5 N*mm"]);
+    let design =
+        design(LONGVAL, &["design.cables.1.bending_loss=0 %", "design.bearings.input_drag=2 N*mm", "design.bearings.output_drag=5 N*mm"]);
     let (behaviour, measured) = solved(&design);
     let load = shaft_load_n(&[[200.0, 200.0]], behaviour.span());
     near(load, 400.0 * behaviour.span()[0], 1e-14);
@@ -389,7 +391,8 @@ fn losses_of_a_loaded_drive_balance() {
     // Input work less output work is what bearings and bending take, at the tensions of that state.
     let design = design(LONGVAL, &[]);
     let geometry = design.built.geometry().expect("a drive");
-    let statics = Statics::new(&design.built, &design.built.place(&geometry, design.built.middle_wraps_rad()), design.source).expect("a drive");
+    let statics =
+        Statics::new(&design.built, &design.built.place(&geometry, design.built.middle_wraps_rad()), design.source).expect("a drive");
     let losses = Losses::of(&design.built, &geometry, &statics).expect("all known");
     let forward = losses.forward(10.0).expect("held");
     let backward = losses.backward(10.0).expect("held");

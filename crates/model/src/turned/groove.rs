@@ -201,6 +201,11 @@ impl Groove {
         self.spans().map(|(from, segment)| squares_m3(from, segment)).sum()
     }
 
+    /// ∫ρ⁴ dζ along the chain, m⁵, in closed form.
+    pub(super) fn fourths_m5(&self) -> f64 {
+        self.spans().map(|(from, segment)| fourths_m5(from, segment)).sum()
+    }
+
     /// Whether it is the profile of grooves so far from each other, m.
     ///
     /// # Errors
@@ -230,7 +235,7 @@ impl Groove {
         }
         let [along_m, out_m] = sub(self.segments[self.segments.len() - 1].end_m(), self.start_m);
         let gap_m = (along_m - spacing_m).abs().max(out_m.abs());
-        if !(gap_m <= SAME_M) {
+        if gap_m.is_nan() || gap_m > SAME_M {
             return Err(GrooveError::Open { gap_m });
         }
         if self.start_m[0].abs() > spacing_m {
@@ -253,7 +258,7 @@ fn sweep_rad(from: [f64; 2], to: [f64; 2], centre: [f64; 2], counterclockwise: b
     if counterclockwise { sweep_rad } else { -sweep_rad }
 }
 
-/// ∫ρ² dζ along a segment: with x and y from the middle of an arc, dζ = dx, ∫y dx = ½Δ(xy) − ½R²Δφ and y² = R² − x².
+/// ∫ρ² dζ along a segment: with x and y from the middle of an arc, dζ = dx, ∫y dx = `½Δ(xy) − ½R²Δφ` and y² = R² − x².
 fn squares_m3(from: [f64; 2], segment: &Segment) -> f64 {
     let to = segment.end_m();
     let Segment::Arc { centre_m: centre, counterclockwise, .. } = segment else {
@@ -264,6 +269,24 @@ fn squares_m3(from: [f64; 2], segment: &Segment) -> f64 {
     let first = 0.5 * (u * v - x * y - square * sweep_rad(from, to, *centre, *counterclockwise));
     let second = (u - x) * (square - (x * x + x * u + u * u) / 3.0);
     centre[1] * centre[1] * (u - x) + 2.0 * centre[1] * first + second
+}
+
+/// ∫ρ⁴ dζ along a segment. On an arc ρ = c + y, and with `I_k` = ∫yᵏ dx: `I_k` (k + 1) = Δ(xyᵏ) + k R² `I_(k−2)`.
+fn fourths_m5(from: [f64; 2], segment: &Segment) -> f64 {
+    let to = segment.end_m();
+    let Segment::Arc { centre_m: centre, counterclockwise, .. } = segment else {
+        let [a, b] = [from[1], to[1]];
+        return (to[0] - from[0]) * (a * a * a * a + a * a * a * b + a * a * b * b + a * b * b * b + b * b * b * b) / 5.0;
+    };
+    let ([x, y], [u, v]) = (sub(from, *centre), sub(to, *centre));
+    let square = x * x + y * y;
+    let zeroth = u - x;
+    let first = 0.5 * (u * v - x * y - square * sweep_rad(from, to, *centre, *counterclockwise));
+    let second = (u * v * v - x * y * y + 2.0 * square * zeroth) / 3.0;
+    let third = (u * v * v * v - x * y * y * y + 3.0 * square * first) / 4.0;
+    let fourth = (u * v * v * v * v - x * y * y * y * y + 4.0 * square * second) / 5.0;
+    let c = centre[1];
+    c * c * c * c * zeroth + 4.0 * c * c * c * first + 6.0 * c * c * second + 4.0 * c * third + fourth
 }
 
 /// Whether a segment runs against the axis: arcs counterclockwise above their middle or clockwise below do.
@@ -338,6 +361,7 @@ impl Chain {
 }
 
 /// Measures of a round seat.
+#[expect(clippy::struct_field_names, reason = "identifiers carry their units")]
 struct Seat {
     /// Half its width, m.
     half_m: f64,

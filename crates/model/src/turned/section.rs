@@ -97,11 +97,10 @@ fn add_clipped(from: [f64; 2], segment: &Segment, moved: impl Fn([f64; 2]) -> [f
     };
     let begin = if first > from[0] { [first, at(first)] } else { from };
     let to_m = if last < to[0] { [last, at(last)] } else { to };
-    match kept {
-        Some((centre_m, counterclockwise)) => walk.segment(begin, Segment::Arc { to_m, centre_m, counterclockwise }),
-        None => {
-            walk.line(begin);
-            walk.line(to_m);
-        }
+    if let Some((centre_m, counterclockwise)) = kept {
+        walk.segment(begin, Segment::Arc { to_m, centre_m, counterclockwise });
+    } else {
+        walk.line(begin);
+        walk.line(to_m);
     }
 }

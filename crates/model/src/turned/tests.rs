@@ -199,3 +199,42 @@ fn profiles_that_no_tool_can_cut_are_refused() {
     assert!(Groove::undercut(0.02, 3e-3, [1e-3, 1e-3], [2.1e-3, 1e-3]).is_err());
     assert!(Groove::undercut(0.02, 3e-3, [1e-3, 1e-3], [0.5e-3, 0.019]).is_err());
 }
+
+#[test]
+fn polar_moments_are_those_of_closed_forms() {
+    let (radius, spacing, length) = (0.025, 2.6e-3, 0.04);
+    let tube = |out: f64, bore: f64| 0.5 * PI * (maths::powi(out, 4) - maths::powi(bore, 4)) * length;
+    let plain = Turned { bore_diameter_m: 0.01, ..body(vec![Section::Plain { length_m: length, radius_m: radius }]) };
+    close(plain.polar_moment_m5(), tube(radius, 0.005), 1e-14);
+
+    // A triangle that narrows from the lands to its tip: ∫ 2πr³ w(r) dr, w = width (r − tip)/depth.
+    let (opening, depth) = (0.7, 1e-3);
+    let (width, tip) = (2.0 * depth * maths::tan(0.5 * opening), radius - depth);
+    let taken = |r: f64| maths::powi(r, 5) / 5.0 - tip * maths::powi(r, 4) / 4.0;
+    let missing = TAU * width / depth * (taken(radius) - taken(tip)) * length / spacing;
+    let vee = body(vec![grooved(length, spacing, 1, Groove::vee(radius, spacing, opening, 0.0, depth).unwrap())]);
+    close(vee.polar_moment_m5(), tube(radius, 0.0) - missing, 1e-12);
+
+    // Round, by Simpson's rule over the angle of its arc.
+    let (seat, depth) = (1.05e-3, 0.8e-3);
+    let (middle, half) = (radius - depth + seat, maths::acos((seat - depth) / seat));
+    let slice = |angle: f64| {
+        let cos = maths::cos(angle);
+        maths::powi(middle - seat * cos, 4) * seat * cos
+    };
+    let steps = 2000_u32;
+    let step = 2.0 * half / f64::from(steps);
+    let weight = |i: u32| {
+        if i == 0 || i == steps {
+            1.0
+        } else if i % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        }
+    };
+    let arc: f64 = (0..=steps).map(|i| weight(i) * slice(-half + step * f64::from(i))).sum::<f64>() * step / 3.0;
+    let land = spacing - 2.0 * seat * maths::sin(half);
+    let round = body(vec![grooved(length, -5.0 * spacing, 5, Groove::round(radius, spacing, seat, depth).unwrap())]);
+    close(round.polar_moment_m5(), 0.5 * PI * (arc + land * maths::powi(radius, 4)) / spacing * length, 1e-12);
+}

@@ -93,7 +93,9 @@ fn cable_of(typed: &mut spec::Cable, span: Span, diagnostics: &mut Diagnostics) 
     };
     missing(&typed.diameter, "diameter", "give `diameter`, or `use = \"steel 7x19 1.5 mm\"`");
     let help = match construction {
-        Some(construction) => format!("no source gives it for {}: measure it at the preload it will have, and give `axial_stiffness`", construction.name),
+        Some(construction) => {
+            format!("no source gives it for {}: measure it at the preload it will have, and give `axial_stiffness`", construction.name)
+        }
         None => "give `axial_stiffness`, or a construction of the catalogue with `use`".to_owned(),
     };
     missing(&typed.axial_stiffness, "axial_stiffness", &help);
@@ -147,7 +149,8 @@ fn fill(typed: &mut spec::Cable, name: &Located<String>, diagnostics: &mut Diagn
     let put = |slot: &mut Slot<Quantity>, value: Option<f64>, property: Option<&Property>, unit: &str| {
         if let (None, Some(value), Ok(unit)) = (&slot, value, Unit::parse(unit)) {
             let from = property.map_or_else(|| entry.name.clone(), |p| format!("{}, {} ({})", entry.name, p.kind, p.source));
-            *slot = Some(Located { value: Quantity { si: value, unit, tolerance: None }, span: name.span, origin: Origin::Catalogue(from) });
+            *slot =
+                Some(Located { value: Quantity { si: value, unit, tolerance: None }, span: name.span, origin: Origin::Catalogue(from) });
         }
     };
     let listed = entry.size(diameter_m);

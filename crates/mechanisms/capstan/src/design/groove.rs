@@ -87,7 +87,11 @@ pub(super) fn seat_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Seat
     for (key, span) in given {
         if let Some(span) = span.filter(|_| !of.contains(&key)) {
             let error = Diagnostic::error("E0702", span, format!("a {} groove has no `{key}` here", profile.value));
-            diagnostics.push(error.label("not used").help(if of.is_empty() { "remove it".to_owned() } else { format!("it has {}", listed(of)) }));
+            diagnostics.push(error.label("not used").help(if of.is_empty() {
+                "remove it".to_owned()
+            } else {
+                format!("it has {}", listed(of))
+            }));
         }
         let needed = of.contains(&key) && !matches!(key, "radius" | "depth");
         if needed && span.is_none() {

@@ -27,7 +27,7 @@ type Rim = Vec<usize>;
 /// The body with facets within `chord` mm of it.
 pub(crate) fn mesh(stack: &Stack, chord: f64) -> Result<Mesh, Error> {
     let about: f64 = stack.sides.iter().zip(stack.levels.windows(2)).map(|(side, ends)| corners(side, ends[1] - ends[0], chord)).sum();
-    if !(about <= MOST) {
+    if about.is_nan() || about > MOST {
         return Err(Error { place: Place::Part, problem: Problem::TooManyCorners { corners: about, most: MOST } });
     }
     let mut growing = Growing { mesh: Mesh { corners: Vec::new(), triangles: Vec::new() } };
@@ -188,17 +188,19 @@ impl Growing {
                 bottom.reverse();
                 left = std::iter::once(right[0]).chain(bottom.drain(..)).chain(left).collect();
                 top.reverse();
-                right.extend(top.drain(..));
+                right.append(top);
                 right.extend(left.last());
             } else if left[0].1 < right[0].1 {
                 right = std::iter::once(left[0]).chain(bottom.drain(..)).chain(right).collect();
-                left.extend(top.drain(..));
+                left.append(top);
                 left.extend(right.last());
             }
             self.ribbon(&left, &right, is_right);
         }
         if is_right {
-            rims.iter_mut().for_each(|rim| rim.reverse());
+            for rim in &mut rims {
+                rim.reverse();
+            }
         }
         rims
     }

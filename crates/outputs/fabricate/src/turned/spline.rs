@@ -138,10 +138,10 @@ fn weights(x: f64, spans: usize) -> (usize, [f64; DEGREE + 1]) {
     weights[0] = 1.0;
     for degree in 1..=DEGREE {
         let mut carried = 0.0;
-        for k in 0..degree {
+        for (k, weight) in weights.iter_mut().enumerate().take(degree) {
             let (right, left) = (knot(here + k + 1) - x, x - knot(here + k + 1 - degree));
-            let part = weights[k] / (right + left);
-            weights[k] = carried + right * part;
+            let part = *weight / (right + left);
+            *weight = carried + right * part;
             carried = left * part;
         }
         weights[degree] = carried;
