@@ -126,7 +126,7 @@ fn the_drawing_has_the_thickness_that_gives_the_force() {
     // The area of the drawing is that of the part: arcs stand for splines within a micrometre.
     let area: f64 = profiles.iter().map(Profile::area_m2).sum();
     let part = &exported.set.parts[0];
-    assert!((area / part.area_m2() - 1.0).abs() < 1e-4, "{area}");
+    assert!((area / part.plate().expect("a plate").area_m2() - 1.0).abs() < 1e-4, "{area}");
     // Beams of 1 mm, two pads of 6 mm × 6 mm, the foot of 5 mm × 6 mm between the halves and the block of 11 mm × 6 mm; the joints of
     // beams, each a few square thicknesses in all, are what is left.
     let length = |axis: &dyn Fn(f64) -> Oriented| {

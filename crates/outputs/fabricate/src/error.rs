@@ -33,9 +33,9 @@ pub enum Place {
 pub enum Boundary {
     /// The outer one.
     Outline,
-    /// One of `Part::cutouts`.
+    /// One of `Plate::cutouts`.
     Cutout(usize),
-    /// One of `Part::holes`.
+    /// One of `Plate::holes`.
     Hole(usize),
 }
 

@@ -1,7 +1,10 @@
 //! Files for making parts: what laser cutters, CAD programs and printers read.
 //!
 //! [`write()`] turns a [`Part`] into the bytes of a file. It is a pure function: no clock, no files, the same bytes every time and on every
-//! machine. All files are in millimetres, with the origin and the axes of the part; the plate fills `0 ≤ z ≤ depth`.
+//! machine. All files are in millimetres, with the origin and the axes of the part; a plate fills `0 ≤ z ≤ depth`, a turned part stands
+//! on the plane z = 0 around the z axis.
+//!
+//! # Plates
 //!
 //! | format | lines, arcs, holes | splines | holds besides |
 //! | --- | --- | --- | --- |
@@ -15,8 +18,21 @@
 //! Exact means to the digits written: 10⁻¹² mm. Corners of the two meshes lie on the boundary, rounded to single precision, which is
 //! what STL holds; both formats hold the same closed mesh.
 //!
+//! # Turned parts
+//!
+//! | format | cylinders, planes | helical grooves | holds besides |
+//! | --- | --- | --- | --- |
+//! | [`Format::Dxf`] | half section at the angle 0: z to the right, radii upwards; exact | the same: profile repeated | layers OUTLINE, CENTRE; texts on NOTES |
+//! | [`Format::Svg`] | the same | the same | title and description, centre line |
+//! | [`Format::Step`] | exact | a strip of B-splines of degree 5 for each segment of each groove, within 10⁻⁷ mm | one closed solid, product name |
+//! | [`Format::Stl`], [`Format::ThreeMf`] | chords within [`Options::facet_error_m`] | facets within the same | as for plates |
+//! | [`Format::Inp`] | [`Problem::OnlyPlates`] | | |
+//!
+//! Drillings are told in the texts of the drawings and cut into no solid. Corners of meshes between those of a profile's chords lie on the
+//! chords. A mesh has at most ten million corners ([`Problem::TooManyCorners`]).
+//!
 //! A part is checked before anything is written ([`Error`]): boundaries that are open, run the wrong way, cross or touch each other, or
-//! lie outside the outline make no part.
+//! lie outside the outline make no part; neither do the turned bodies that [`Turned::check`] refuses.
 
 mod cap;
 mod dxf;

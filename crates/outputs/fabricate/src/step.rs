@@ -1,6 +1,6 @@
 //! STEP (ISO 10303-21) after AP214: one solid with exact faces.
 //!
-//! Each edge of a boundary becomes a wall: a plane, part of a cylinder, or an extruded B-spline. Walls share their edges with each other
+//! Each edge of a plate's boundary becomes a wall: a plane, part of a cylinder, or an extruded B-spline. Walls share their edges with each other
 //! and with the two caps, so the shell is closed by construction.
 //!
 //! The plain volume of Open CASCADE takes at most 61 points along an edge, too few for splines of many spans; its adaptive one agrees

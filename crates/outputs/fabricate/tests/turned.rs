@@ -1,4 +1,5 @@
 //! Turned parts: what their files hold, against the surface that they are said to have.
+#![allow(clippy::unwrap_used, reason = "test code, in helpers too")]
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
