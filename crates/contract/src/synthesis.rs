@@ -3,7 +3,7 @@
 //! A family knows shapes and how they scale; the library completes the user's file with what a family proposes, analyses it in full, has
 //! it corrected, and ranks what keeps every requirement. Neither needs to know more of the other.
 
-use forcewright_model::{Outcome, ParameterRow};
+use forcewright_model::{Outcome, ParameterRow, StudyTable};
 
 /// How a file without a design is made one that can be understood.
 #[derive(Clone, Copy, Debug)]
@@ -80,4 +80,12 @@ pub trait Synthesiser: Send + Sync {
     fn relaxations(&self, slack: f64) -> Vec<Relaxation>;
     /// The nearest that can be offered where nothing keeps to the limits: what misses them least.
     fn nearest(&self) -> Vec<Proposal>;
+    /// What the closed forms took, in words; empty where there is nothing to tell.
+    fn effort(&self) -> Option<String> {
+        None
+    }
+    /// Tables about the best design that meets everything, such as its alternatives.
+    fn tables(&self, _best: &Proposal) -> Vec<StudyTable> {
+        Vec::new()
+    }
 }

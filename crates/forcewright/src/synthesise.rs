@@ -13,7 +13,7 @@ use forcewright_contract::edit;
 use forcewright_contract::project::{Choices, Files, Project};
 use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Synthesiser};
 use forcewright_contract::tree::{Item, Value};
-use forcewright_model::{Report, StatusKind};
+use forcewright_model::{Report, StatusKind, StudyTable};
 use rayon::prelude::*;
 
 use crate::optimise::{Beginnings, shortfall, way};
@@ -100,6 +100,10 @@ pub struct Synthesised {
     pub ways: Vec<Way>,
     /// Designs analysed in full, their corrections included.
     pub analysed: usize,
+    /// What the family's closed forms took, in words.
+    pub effort: Option<String>,
+    /// The family's tables about the best design; empty where none meets everything.
+    pub tables: Vec<StudyTable>,
     /// Proposals that are not fit to be made: shape and reason.
     pub rejected: Vec<(String, String)>,
     /// Whether it was interrupted.
@@ -267,6 +271,8 @@ impl SynthesisTask {
             design.report.input_name.clone_from(&design.file);
         }
         Synthesised {
+            effort: self.synthesiser.effort(),
+            tables: designs.first().filter(|_| met).map_or_else(Vec::new, |best| self.synthesiser.tables(&best.proposal)),
             designs,
             ways,
             analysed: work.analysed.into_inner(),

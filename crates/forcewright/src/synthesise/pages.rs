@@ -31,7 +31,8 @@ impl Synthesised {
                 "no single limit is enough: loosen two of stroke, room, stress, band, depth and copies, or draw another shape".to_owned();
             all.push(say("What blocks", text));
         }
-        all.push(say("Work", format!("{} designs were analysed in full.", self.analysed)));
+        let effort = self.effort.as_ref().map_or_else(String::new, |effort| format!(" {effort}"));
+        all.push(say("Work", format!("{} designs were analysed in full.{effort}", self.analysed)));
         if self.interrupted {
             all.push(say("Interrupted", "What was found until then is kept.".to_owned()));
         }
@@ -105,6 +106,10 @@ impl Synthesised {
             StudySection { id: "designs", title: "Designs", parts: designs },
             StudySection { id: "shapes", title: "Curves and shapes", parts: figures.collect() },
         ];
+        if !self.tables.is_empty() {
+            let parts = self.tables.iter().cloned().map(part).collect();
+            sections.push(StudySection { id: "alternatives", title: "Alternatives", parts });
+        }
         if !self.rejected.is_empty() {
             sections.push(StudySection { id: "rejected", title: "Not fit", parts: vec![part(rejected)] });
         }

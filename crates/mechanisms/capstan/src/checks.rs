@@ -14,7 +14,7 @@ use crate::metrics::METRICS;
 use crate::statics::Statics;
 
 /// Largest angle between a span and its groove, rad: 1.5°, the rule of drum makers; no standard was at hand.
-const LARGEST_FLEET_RAD: f64 = 0.026_179_938_779_914_944;
+pub(crate) const LARGEST_FLEET_RAD: f64 = 0.026_179_938_779_914_944;
 /// Radius of a seat over the diameter of the cable: below the first it pinches, at the second steel cables endure two thirds of what they do
 /// at 0.53 (`feyrer-2015`).
 const SEAT: [f64; 2] = [0.5, 0.6];

@@ -121,6 +121,21 @@ pub(crate) const CODES: &[Explanation] = &[
         "A `groove_phase` turns the grooves of the second ends against those of the first. Where both lie on the same stretch of the output drum they would cut through each other. More `extra_turns` or less travel separates the stretches; without a phase, at a centre distance where the spans are in line, there is one set of grooves for both.",
     ),
     code(
+        "E0720",
+        "a synthesis needs more",
+        "A synthesis of a cable drive needs `requirements.torque` at the output, and in `[synthesise]` the `ratio`, the `travel` of the output and the `friction` of the cable on the drums. The envelope, cables, drums, turns and bearings that it may use stand there too.",
+    ),
+    code(
+        "E0721",
+        "no such cable for a synthesis",
+        "Each of `synthesise.constructions` is one of the catalogue of which stiffness, strength and least drum are known in one of `synthesise.cable_diameters`. Galvanised cables have the strengths of listed sizes only; strand does not belong on drums; of braids the stiffness must be measured.",
+    ),
+    code(
+        "E0722",
+        "not part of a synthesis",
+        "A synthesis computes with the corrected model at the temperature of assembly. Add the paper's model or a change of temperature to the files written, and look at what `solve` says.",
+    ),
+    code(
         "W0701",
         "a groove with much friction",
         "A factor near π/2 needs a full half circle under uniform pressure. Seats of 120 to 150° that are worn in give 1.17 to 1.36.",

@@ -18,6 +18,7 @@ mod spec;
 mod statements;
 mod statics;
 mod study;
+mod synthesis;
 mod tension;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
@@ -25,6 +26,7 @@ use forcewright_contract::family::{Analysis, Mechanism, Progress};
 use forcewright_contract::metrics::results;
 use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose, Studies};
+use forcewright_contract::synthesis::{Skeleton, Synthesiser};
 use forcewright_model::{Counter, NoPart, Outcome, PartSet};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -92,6 +94,14 @@ impl Mechanism for Capstan {
 
     fn task(spec: &Spec, design: &Design, free: &[Free], _: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
         study::task(spec, design, free, diagnostics)
+    }
+
+    fn skeleton() -> Option<Skeleton> {
+        Some(synthesis::SKELETON)
+    }
+
+    fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
+        synthesis::synthesiser(spec, design, diagnostics)
     }
 
     fn explanations() -> &'static [Explanation] {

@@ -7,6 +7,7 @@ use forcewright_contract::metrics::Limits;
 use forcewright_contract::studies::Studies;
 
 use crate::metrics::CapstanMetrics;
+use crate::synthesis::Synthesise;
 
 /// Everything that a project file can say.
 #[derive(Debug, Default)]
@@ -25,6 +26,8 @@ pub struct Spec {
     pub(crate) parts: Section<Parts>,
     /// `[model]`
     pub(crate) model: Section<Model>,
+    /// `[synthesise]`
+    pub(crate) synthesise: Section<Synthesise>,
     /// `[optimise]` and `[tolerance]`
     pub(crate) studies: Studies,
 }
@@ -214,6 +217,8 @@ impl Describe for Spec {
         self.inertia.describe(v, &Param::new("inertia", "What turns with each drum, the drum itself included: for the resonance."));
         self.parts.describe(v, &Param::new("parts", "The drums that are made. Without influence on the forces."));
         self.model.describe(v, &Param::new("model", "Which equations are solved."));
+        let doc = "What `forcewright synthesise` may use: ratio, travel, envelope, friction, cables, drums.";
+        self.synthesise.describe(v, &Param::new("synthesise", doc));
         self.studies.describe(v);
         v.reserved(RESERVED_SECTIONS);
     }
