@@ -64,7 +64,7 @@ fn loops_work_as_much_as_friction_takes() {
         let places: Vec<f64> = (0..=n).map(|i| from_m + (to_m - from_m) * f64::from(i) / f64::from(n)).collect();
         let steps = history.along(&places).expect("finite");
         let weight = |i: usize| {
-            if i == 0 || i == n as usize {
+            if i == 0 || i + 1 == places.len() {
                 1.0
             } else if i % 2 == 1 {
                 4.0

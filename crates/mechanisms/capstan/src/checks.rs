@@ -1,5 +1,7 @@
 //! Requirements and rules against what was found.
 
+use std::fmt::Write as _;
+
 use forcewright_base::roots::root;
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::judge::Comparison;
@@ -53,7 +55,7 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
         all.extend(context.limits(requirements));
     }
     all.extend(context.strength());
-    all.extend(context.bending());
+    all.push(context.bending());
     all.extend(context.slack());
     all.extend(context.termination());
     all.push(context.fleet());
@@ -268,7 +270,7 @@ impl Context<'_> {
     }
 
     /// CAPS006: drum over cable diameter.
-    fn bending(&self) -> Option<Check> {
+    fn bending(&self) -> Check {
         let least = self.design.built.cables.iter().map(|c| c.least_ratio).collect::<Option<Vec<_>>>();
         let limit = least.and_then(|all| all.into_iter().reduce(f64::max));
         let base = self.base("CAPS006", "bending", "Drum diameter over cable diameter", "bending_ratio");
@@ -281,7 +283,7 @@ impl Context<'_> {
         });
         let missing = "give `min_bend_ratio` of the cables".to_owned();
         let basis = "D/d of the smaller drum against the least ratio of the construction (maker's data)";
-        Some(Comparison { required: false, limit, sense: Sense::AtLeast, fix, missing, basis: basis.to_owned(), ..base }.judge())
+        Comparison { required: false, limit, sense: Sense::AtLeast, fix, missing, basis: basis.to_owned(), ..base }.judge()
     }
 
     /// CAPS007: the slack side keeps some tension.
@@ -326,10 +328,10 @@ impl Context<'_> {
         let phase = self.behaviour.geometry.aligning_phase_rad(0).ok();
         let mut fix = "the cable climbs out of its groove".to_owned();
         if let Some(distance_m) = nearest {
-            fix += &format!(": both spans are in line at a centre distance of {}", self.length(distance_m));
+            let _ = write!(fix, ": both spans are in line at a centre distance of {}", self.length(distance_m));
         }
         if let Some(phase) = phase {
-            fix += &format!(", or with `groove_phase = \"{}\"`", format_si(phase, &self.design.units.angle, 5));
+            let _ = write!(fix, ", or with `groove_phase = \"{}\"`", format_si(phase, &self.design.units.angle, 5));
         }
         let basis = "largest angle between a span and its groove, against 1.5°, makers' rule for smooth running";
         Comparison { required: false, limit: Some(LARGEST_FLEET_RAD), fix, basis: basis.to_owned(), ..base }.judge()

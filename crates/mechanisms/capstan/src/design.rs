@@ -13,6 +13,7 @@ use forcewright_elements::grooves::Groove;
 use crate::geometry::{Belt, Drive, GeometryError, Hand, Layout, Setting, Surface};
 use crate::spec::Spec;
 use crate::statics::{Place, Statics};
+use crate::whole::few;
 
 pub use cables::Cable;
 pub use groove::Seat;
@@ -93,7 +94,7 @@ pub struct Built {
 /// What the shafts turn in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bearings {
-    /// μ_b.
+    /// `μ_b`.
     pub friction: Option<f64>,
     /// Bores of input and output, m.
     pub bores_m: [Option<f64>; 2],
@@ -103,7 +104,6 @@ pub struct Bearings {
 
 /// How the drums are made, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::struct_field_names, reason = "identifiers carry their units")]
 pub struct Making {
     /// Drum beyond the outermost groove line, m.
     pub margin_m: f64,
@@ -268,7 +268,7 @@ fn built_of(spec: &Spec, seat: Seat, cables: Vec<Cable>) -> Option<Built> {
     // Diameters of the drum end where the cable begins.
     let added_m = if design.diameters.as_ref().is_some_and(|d| d.value == "rope centre") { 0.0 } else { cable_m };
     let radii_m = [0.5 * (si(&design.input_diameter)? + added_m), 0.5 * (si(&design.output_diameter)? + added_m)];
-    let nearest = (radii_m[1] / radii_m[0]).round().clamp(1.0, 64.0) as u32;
+    let nearest = few((radii_m[1] / radii_m[0]).clamp(1.0, 64.0));
     let bearings = &design.bearings;
     Some(Built {
         radii_m,
@@ -343,10 +343,11 @@ fn check(spec: &Spec, built: &Built, source: Source, diagnostics: &mut Diagnosti
         }
     }
     let first = &built.cables[0];
+    let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
     let equal = built
         .cables
         .iter()
-        .all(|c| c.axial_stiffness_n == first.axial_stiffness_n && c.preload_left_n(built) == first.preload_left_n(built));
+        .all(|c| same(c.axial_stiffness_n, first.axial_stiffness_n) && same(c.preload_left_n(built), first.preload_left_n(built)));
     if source == Source::Paper && !equal {
         let at = span_of(spec.model.source.as_ref(), spec);
         diagnostics.push(

@@ -20,6 +20,7 @@ mod statics;
 mod study;
 mod synthesis;
 mod tension;
+mod whole;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress};

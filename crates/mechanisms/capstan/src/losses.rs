@@ -20,7 +20,7 @@ pub struct Losses<'a> {
     statics: &'a Statics,
     /// sin γ and cos γ.
     span: [f64; 2],
-    /// μ_b D/2 of input and output, m.
+    /// `μ_b` D/2 of input and output, m.
     bearings_m: [f64; 2],
     drags_nm: [f64; 2],
     /// c of each cable.

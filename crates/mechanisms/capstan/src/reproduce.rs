@@ -13,6 +13,7 @@ use crate::design::{self, Design, Source};
 use crate::geometry::{Drive, GeometryError, Layout};
 use crate::spec::Spec;
 use crate::statics::{Loaded, Place, Statics};
+use crate::whole::whole;
 
 /// The papers of this family.
 pub(crate) const ALL: &[Reproduction] =
@@ -131,7 +132,7 @@ fn drive(design: &Design, distance_mm: f64, ratio: u32) -> Option<Drive> {
 /// The k-th centre distance at which both spans are in line, over r₁.
 fn aligned(design: &Design, three: bool, k: f64) -> Option<f64> {
     let drive = drive(design, 65.0, if three { 3 } else { 5 })?;
-    let apart = i64::from(drive.layout().extra_turns) + 1 + k as i64;
+    let apart = i64::from(drive.layout().extra_turns) + 1 + whole(k);
     let all = drive.aligned_distances(0.06, 0.4).ok()?;
     Some(all.iter().find(|a| a.lines_apart == apart)?.centre_distance_m / drive.layout().input_radius_m)
 }

@@ -11,6 +11,7 @@ use crate::design::Design;
 use crate::geometry::{CentreLine, Drum, Piece};
 use crate::statics::Loaded;
 use crate::tension::Along;
+use crate::whole::count;
 
 /// Frames of a film.
 const FRAMES: usize = 21;
@@ -26,21 +27,21 @@ fn line(points: Vec<Point>, width_m: f64, role: Role, values: Option<Vec<f64>>) 
 }
 
 fn arc(centre: Point, radii_m: [f64; 2], from_rad: f64, sweep_rad: f64) -> Vec<Point> {
-    let count = ((sweep_rad.abs() / TAU * PER_TURN as f64).ceil() as usize).clamp(2, 20 * PER_TURN);
+    let intervals = count((sweep_rad.abs() / TAU * PER_TURN as f64).ceil()).clamp(2, 20 * PER_TURN);
     let at = |i: usize| {
-        let u = i as f64 / count as f64;
+        let u = i as f64 / intervals as f64;
         let (sin, cos) = maths::sin_cos(from_rad + u * sweep_rad);
         let r = radii_m[0] + u * (radii_m[1] - radii_m[0]);
         [centre[0] + r * cos, centre[1] + r * sin]
     };
-    (0..=count).map(at).collect()
+    (0..=intervals).map(at).collect()
 }
 
 /// The drive seen along its axes, under growing torque; `None` where nothing could be computed.
 pub(crate) fn drive(design: &Design, behaviour: &Behaviour, axis: Axis) -> Option<Film> {
     let last = behaviour.stations.len().checked_sub(1).filter(|last| *last > 0)?;
     let line = behaviour.geometry.centre_line(0, 0.5 * design.built.travel_rad).ok()?;
-    let most_n = behaviour.stations.iter().flat_map(|s| s.tensions_n.first()).flatten().copied().fold(0.0, f64::max);
+    let most_n = behaviour.stations.iter().filter_map(|s| s.tensions_n.first()).flatten().copied().fold(0.0, f64::max);
     let places: Vec<usize> = (0..FRAMES).map(|i| i * last / (FRAMES - 1)).collect();
     let frames = places.iter().filter_map(|i| loaded_frame(design, behaviour, &line, &behaviour.stations[*i])).collect::<Vec<_>>();
     let stage = Scene {
@@ -182,7 +183,7 @@ pub(crate) fn drums(design: &Design, behaviour: &Behaviour) -> Option<Film> {
     };
     let axis =
         Axis { name: "output", label: "Turn of the output".to_owned(), dimension: Dimension::Angle, display: design.units.angle.clone() };
-    (!frames.is_empty()).then(|| Film { axis, stage, chosen: frames.len() / 2, frames })
+    (!frames.is_empty()).then_some(Film { axis, stage, chosen: frames.len() / 2, frames })
 }
 
 /// The section of a drum along its axis, m.
@@ -249,18 +250,18 @@ fn space_frame(design: &Design, behaviour: &Behaviour, view: &View, output_rad: 
 
 /// A part of a cable on a drum, cut where it passes to the back.
 fn wound(view: &View, helix: &crate::geometry::Helix) -> Vec<Item> {
-    let count = ((helix.sweep_rad.abs() / TAU * PER_TURN as f64).ceil() as usize).clamp(2, 200 * PER_TURN);
+    let intervals = count((helix.sweep_rad.abs() / TAU * PER_TURN as f64).ceil()).clamp(2, 200 * PER_TURN);
     let mut items = Vec::new();
     let mut run: Vec<Point> = Vec::new();
     let mut front = None;
-    for i in 0..=count {
-        let u = i as f64 / count as f64;
+    for i in 0..=intervals {
+        let u = i as f64 / intervals as f64;
         let angle_rad = helix.start_rad + u * helix.sweep_rad;
         let (sin, cos) = maths::sin_cos(angle_rad);
         let point = view.at([helix.axis_m + helix.radius_m * cos, helix.radius_m * sin, helix.start_m + u * helix.rise_m]);
         let faces = view.faces(angle_rad);
         run.push(point);
-        if front.is_some_and(|f| f != faces) || i == count {
+        if front.is_some_and(|f| f != faces) || i == intervals {
             items.push(run_item(std::mem::take(&mut run), front.unwrap_or(faces)));
             run.push(point);
         }

@@ -118,7 +118,7 @@ impl Statics {
                 let [one, other] = self.bundle.capacities_n();
                 one.into_iter().chain(other).reduce(f64::min).map(|force_n| force_n * lever_m)
             }
-            Source::Paper => self.bundle.cables().iter().map(paper_capacity_n).sum::<Option<f64>>().map(|force_n| force_n * lever_m),
+            Source::Paper => Some(self.bundle.cables().iter().map(paper_capacity_n).sum::<f64>() * lever_m),
         }
     }
 
@@ -201,10 +201,10 @@ impl Statics {
 }
 
 /// Gross slip with the paper's tensions: `2 T_p tanh(μΘ/2)`; at most `2 T_p`.
-fn paper_capacity_n(drive: &Drive) -> Option<f64> {
+fn paper_capacity_n(drive: &Drive) -> f64 {
     let spec = drive.spec();
     match spec.hold {
-        Hold::Friction { wrap_rad } => Some(spec.preload_n * 2.0 * (1.0 - 2.0 / (maths::exp(spec.input.friction * wrap_rad) + 1.0))),
-        Hold::Fixed { .. } => Some(2.0 * spec.preload_n),
+        Hold::Friction { wrap_rad } => spec.preload_n * 2.0 * (1.0 - 2.0 / (maths::exp(spec.input.friction * wrap_rad) + 1.0)),
+        Hold::Fixed { .. } => 2.0 * spec.preload_n,
     }
 }

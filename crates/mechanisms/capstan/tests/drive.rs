@@ -160,7 +160,7 @@ fn losses_have_closed_forms() {
     // Nothing lost: nothing needed to turn it, efficiency 1.
     let free = ["design.bearings.friction=0", "design.cables.1.bending_loss=0 %"];
     let (_, measured) = solved(&design(LONGVAL, &free));
-    assert_eq!(get(&measured, "backdrive_torque_output"), 0.0);
+    assert!(get(&measured, "backdrive_torque_output").abs() <= 0.0);
     near(get(&measured, "efficiency_forward"), 1.0, 1e-12);
     near(get(&measured, "efficiency_backward"), 1.0, 1e-12);
     // Bearings alone, at rest: μ_b (D₁/2 R + D₂/2) 2T_p sin γ to first order; drags add R times that of the input.
@@ -197,7 +197,7 @@ fn what_is_not_known_is_not_assessed() {
 fn scaled(design: &Design, k: f64) -> Design {
     let mut large = design.clone();
     let Built { radii_m, distance_m, pitch_m, cables, bearings, seat, .. } = &mut large.built;
-    radii_m.iter_mut().for_each(|r| *r *= k);
+    *radii_m = radii_m.map(|r| r * k);
     *distance_m *= k;
     *pitch_m *= k;
     for cable in cables {
@@ -241,7 +241,7 @@ fn size_scales_everything() {
         ("bending_ratio", 0),
         ("cable_safety_factor", 0),
     ] {
-        near(get(&b, name), get(&a, name) * k.powi(power), 1e-9);
+        near(get(&b, name), get(&a, name) * forcewright_base::maths::powf(k, f64::from(power)), 1e-9);
     }
 }
 
@@ -269,7 +269,7 @@ fn a_fastened_cable_does_not_slip_as_a_whole() {
     near(get(&measured, "stiffness_tangent_output"), get(&solved(&design(LONGVAL, &[])).1, "stiffness_tangent_output"), 1e-9);
     // Far beyond, the taut side carries alone.
     let far = behaviour.statics.under(200.0).expect("pinned");
-    assert_eq!(far.tensions_n[0][1], 0.0);
+    assert!(far.tensions_n[0][1].abs() <= 0.0);
     near(far.tensions_n[0][0], far.force_n, 1e-12);
 }
 

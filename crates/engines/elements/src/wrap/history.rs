@@ -319,7 +319,7 @@ impl History {
         for displacement_m in displacements_m {
             finite("displacement_m", *displacement_m)?;
             let guess = match last {
-                [Some((before_m, before)), Some((there_m, there))] if there_m != before_m => {
+                [Some((before_m, before)), Some((there_m, there))] if (there_m - before_m).abs() > 0.0 => {
                     let ahead = (displacement_m - there_m) / (there_m - before_m);
                     [0, 1].map(|k| Some(there[k] + ahead * (there[k] - before[k])))
                 }

@@ -10,6 +10,7 @@ use forcewright_elements::materials::{self, Property};
 use super::{Built, place_of, si};
 use crate::geometry::{Drive, GeometryError, Layout};
 use crate::spec::{self, Spec};
+use crate::whole::small;
 
 /// A cable of the drive, SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -224,7 +225,7 @@ pub(super) fn place_lines(spec: &Spec, built: &mut Built, diagnostics: &mut Diag
 
 fn typed_lines(typed: &[f64]) -> Option<[i32; 2]> {
     match typed {
-        [one, other] if one.fract() == 0.0 && other.fract() == 0.0 => Some([*one as i32, *other as i32]),
+        [one, other] if one.fract() == 0.0 && other.fract() == 0.0 => Some([small(*one), small(*other)]),
         _ => None,
     }
 }

@@ -5,6 +5,8 @@ use std::f64::consts::{PI, TAU};
 use forcewright_base::maths::{atan2, sin};
 use forcewright_base::roots::root;
 
+use crate::whole::whole;
+
 use super::{Belt, Drive, Drum, GeometryError, Setting, Surface, free_span_m, tangent_rad};
 
 /// Most centre distances that are given at once.
@@ -247,10 +249,4 @@ impl Drive {
         }
         0.5 * (least + most)
     }
-}
-
-/// The nearest whole number.
-#[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
-fn whole(x: f64) -> i64 {
-    x.round() as i64
 }

@@ -76,7 +76,7 @@ pub(super) fn factor(asked: &Asked, knob: Knob) -> Option<f64> {
     }
     let (mut low, mut high) = (1.0, FARTHEST);
     for _ in 0..HALVINGS {
-        let middle: f64 = (low * high as f64).sqrt();
+        let middle: f64 = (low * high).sqrt();
         if helps(middle) {
             high = middle;
         } else {

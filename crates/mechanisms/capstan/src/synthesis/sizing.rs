@@ -14,6 +14,7 @@ use crate::checks::LARGEST_FLEET_RAD;
 use crate::design::{Bearings, Built, Cable, Design, Seat};
 use crate::geometry::{self, Belt, Layout};
 use crate::losses::shaft_load_n;
+use crate::whole::{few, small};
 
 /// A cable that there is.
 #[derive(Clone, Copy, Debug)]
@@ -109,7 +110,7 @@ impl Asked {
 
     /// Whole number of starts next to the ratio.
     pub(super) fn starts(&self) -> u32 {
-        self.ratio.round().clamp(1.0, 64.0) as u32
+        few(self.ratio.clamp(1.0, 64.0))
     }
 
     pub(super) fn built(&self, frame: &Frame, between: i32, preload_n: f64) -> Built {
@@ -273,8 +274,8 @@ fn least_between(asked: &Asked, frame: &Frame) -> i32 {
     let per_line = asked.ratio / f64::from(asked.starts());
     let wrapped = f64::from(frame.turns) + 1.0 - tangent_rad(asked, frame) / PI;
     // A first end runs to the nearest turn of the input, up to half a pitch aside.
-    let aside = if per_line == 1.0 { 0.0 } else { 0.5 };
-    (((wrapped - aside) / per_line - ROUNDING).ceil() as i32).max(1)
+    let aside = if (per_line - 1.0).abs() > 0.0 { 0.5 } else { 0.0 };
+    small(((wrapped - aside) / per_line - ROUNDING).ceil()).max(1)
 }
 
 fn tangent_rad(asked: &Asked, frame: &Frame) -> f64 {
@@ -296,7 +297,7 @@ fn width_bound_m(asked: &Asked, frame: &Frame) -> f64 {
     let wrapped = f64::from(frame.turns) + 1.0 - gamma / PI;
     let per_line = asked.ratio / f64::from(asked.starts());
     // Ends lie on groove lines, not where the cable would land.
-    let aside = if per_line == 1.0 { 0.0 } else { 1.0 };
+    let aside = if (per_line - 1.0).abs() > 0.0 { 1.0 } else { 0.0 };
     let others = ((f64::from(frame.cables) - 1.0) * f64::from(least_between(asked, frame)) * per_line - aside).max(0.0);
     let span = frame.distance_m * maths::sin_cos(gamma).0 / (PI * frame.input_m);
     let input = asked.ratio * asked.travel_rad / TAU;

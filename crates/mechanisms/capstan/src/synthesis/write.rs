@@ -9,6 +9,7 @@ use forcewright_elements::grooves::Groove;
 use super::sizing::{Asked, Frame, Merits, Size};
 use crate::design::DisplayUnits;
 use crate::geometry::Belt;
+use crate::whole::{count, few, small};
 
 /// Density of the drums for their moments of inertia where the project gives none, kg/m³: aluminium.
 const ALUMINIUM_KG_PER_M3: f64 = 2700.0;
@@ -79,8 +80,8 @@ fn state(size: &Size) -> Vec<f64> {
 /// The size of a proposal.
 pub(super) fn read(state: &[f64]) -> Option<Size> {
     let [rope, cables, turns, apart, input_m, distance_m, between, preload_n, width_m, cost_m3] = *state else { return None };
-    let frame = Frame { rope: rope as usize, cables: cables as u32, turns: turns as u32, apart: apart as i32, input_m, distance_m };
-    Some(Size { frame, between: between as i32, preload_n, width_m, cost_m3 })
+    let frame = Frame { rope: count(rope), cables: few(cables), turns: few(turns), apart: small(apart), input_m, distance_m };
+    Some(Size { frame, between: small(between), preload_n, width_m, cost_m3 })
 }
 
 fn millimetres(m: f64) -> String {
