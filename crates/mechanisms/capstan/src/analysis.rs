@@ -32,6 +32,8 @@ pub struct Behaviour {
     pub geometry: Drive,
     /// Tensions and stiffness in the middle of the travel.
     pub statics: Statics,
+    /// The same at an end of the travel, where the wrap before one termination is shortest.
+    pub end: Option<Statics>,
     /// Under growing torque at the output, from zero on.
     pub stations: Vec<Loaded>,
     /// Under the required torque; else what keeps it from being held.
@@ -73,6 +75,7 @@ impl Behaviour {
         let built = &design.built;
         let geometry = built.geometry().map_err(NoDrive::Geometry)?;
         let statics = Statics::new(built, &built.place(&geometry, built.middle_wraps_rad()), design.source).map_err(NoDrive::Wrap)?;
+        let end = at_end(built, &geometry, design.source);
         let torque_nm = design.requirements.as_ref().map(|r| r.torque_nm);
         let required = torque_nm.map(|t| statics.under(t));
         let stations = stations(&statics, built, torque_nm);
@@ -81,12 +84,12 @@ impl Behaviour {
             _ => None,
         };
         let reaches_end = match &required {
-            Some(Ok(loaded)) => at_ends(built, &geometry, design.source, loaded.torque_nm),
+            Some(Ok(loaded)) => Some(reaches_end(end.as_ref(), loaded.torque_nm)),
             _ => None,
         };
         let states = (stations.len() + 2 * LOOP_POINTS) as u64;
         let neighbours = geometry.occupancy();
-        Ok(Self { geometry, statics, stations, required, cycle, reaches_end, neighbours, states })
+        Ok(Self { geometry, statics, end, stations, required, cycle, reaches_end, neighbours, states })
     }
 
     /// The state under the required torque.
@@ -110,12 +113,17 @@ fn stations(statics: &Statics, built: &Built, torque_nm: Option<f64>) -> Vec<Loa
     (0..=STATIONS).map_while(|i| statics.under(top_nm * i as f64 / STATIONS as f64).ok()).collect()
 }
 
-/// Whether slip reaches a termination at one of the ends of the travel.
-fn at_ends(built: &Built, geometry: &Drive, source: Source, torque_nm: f64) -> Option<bool> {
-    let wraps = [built.guard_rad, built.guard_rad + built.travel_rad];
-    let statics = Statics::new(built, &built.place(geometry, wraps), source).ok()?;
-    let at = |torque_nm: f64| statics.under(torque_nm).ok().map(|l| l.at_end);
-    Some(at(torque_nm)? || at(-torque_nm)?)
+/// The drive at an end of its travel; the other end is its mirror image.
+fn at_end(built: &Built, geometry: &Drive, source: Source) -> Option<Statics> {
+    // Without a guard nothing is wrapped there; a wrap must have some angle.
+    let shortest = built.guard_rad.max(1e-9);
+    Statics::new(built, &built.place(geometry, [shortest, shortest + built.travel_rad]), source).ok()
+}
+
+/// Whether slip reaches a termination at an end of the travel, loaded either way; a torque that is not held there slips through.
+fn reaches_end(end: Option<&Statics>, torque_nm: f64) -> bool {
+    let at = |torque_nm: f64| end.and_then(|s| s.under(torque_nm).ok()).is_none_or(|l| l.at_end);
+    at(torque_nm) || at(-torque_nm)
 }
 
 /// Every metric that the behaviour has.
@@ -137,7 +145,8 @@ fn measure_statics(m: &mut Measured, built: &Built, behaviour: &Behaviour) {
     let initial = statics.initial_nm_per_rad();
     m.set("stiffness_initial_output", initial);
     m.set("stiffness_initial_input", initial / (built.ratio() * built.ratio()));
-    m.set("gross_slip_torque_output", statics.gross_slip_nm());
+    let ends_nm = behaviour.end.as_ref().and_then(Statics::gross_slip_nm);
+    m.set("gross_slip_torque_output", statics.gross_slip_nm().map(|nm| nm.min(ends_nm.unwrap_or(nm))));
     m.set("preload_left", built.cables.iter().map(|c| c.preload_left_n(built)).fold(f64::INFINITY, f64::min));
     m.set("ratio", built.ratio());
     m.set("friction_effective", built.friction * built.groove_factor);
@@ -157,7 +166,7 @@ fn measure_loaded(m: &mut Measured, built: &Built, behaviour: &Behaviour, loaded
         m.set(names[1], statics.torsional(loaded.secant_n_per_m, shaft));
     }
     m.set("wind_up_output", loaded.turn_rad);
-    m.set("taut_tension", loaded.tensions_n.iter().map(|t| t[0]).fold(f64::NEG_INFINITY, f64::max));
+    m.set("taut_tension", taut_n(behaviour, loaded).into_iter().reduce(f64::max));
     m.set("slack_tension", loaded.tensions_n.iter().map(|t| t[1]).fold(f64::INFINITY, f64::min));
     let most = |side: usize| loaded.slip_rad.iter().flat_map(|s| s[side]).fold(0.0, f64::max);
     m.set("slip_angle_taut", most(0));
@@ -169,6 +178,14 @@ fn measure_loaded(m: &mut Measured, built: &Built, behaviour: &Behaviour, loaded
     m.set("torsional_frequency", output.map(|output| hertz(1.0 / output)));
     let reflected = input.map(|input| input * built.ratio() * built.ratio());
     m.set("torsional_frequency_free", reflected.zip(output).map(|(input, output)| hertz(1.0 / input + 1.0 / output)));
+}
+
+/// Largest tension of each cable under the required torque, in the middle of the travel and at its ends, N.
+fn taut_n(behaviour: &Behaviour, loaded: &Loaded) -> Vec<f64> {
+    let torque_nm = loaded.torque_nm;
+    let ends = [torque_nm, -torque_nm].map(|t| behaviour.end.as_ref().and_then(|s| s.under(t).ok()));
+    let places = || std::iter::once(loaded).chain(ends.iter().flatten());
+    (0..loaded.tensions_n.len()).map(|i| places().flat_map(|l| l.tensions_n[i]).fold(f64::NEG_INFINITY, f64::max)).collect()
 }
 
 /// Part of the wrap on the input drum on which a cable slips.
@@ -236,7 +253,7 @@ fn measure_cables(m: &mut Measured, built: &Built, behaviour: &Behaviour) {
         "wire_bending_stress",
         built.cables.iter().map(stress).collect::<Option<Vec<_>>>().and_then(|all| all.into_iter().reduce(f64::max)),
     );
-    let taut = behaviour.at_torque().map(|l| l.tensions_n.iter().map(|t| t[0].max(t[1])).collect::<Vec<_>>());
+    let taut = behaviour.at_torque().map(|l| taut_n(behaviour, l));
     let factor = |(cable, taut_n): (&crate::design::Cable, f64)| Some(cable.breaking_n? * kept(built, cable, drum_m)? / taut_n);
     m.set(
         "cable_safety_factor",

@@ -134,11 +134,11 @@ impl Context<'_> {
         let fix = value.map_or_else(String::new, |held_nm| {
             format!(
                 "it grows in proportion to the preload: {} times as much holds the torque; another turn on the input drum multiplies the ratio of the tensions by {}",
-                format_number(requirements.torque_nm / held_nm, 3),
+                format_number(1.006 * requirements.torque_nm / held_nm, 3),
                 format_number(forcewright_base::maths::exp(std::f64::consts::TAU * self.design.built.friction * self.design.built.groove_factor), 3)
             )
         });
-        let basis = "gross slip: ln(T_taut/T_slack) = μΘ on the input drum, both sides with one displacement; in the paper's model 2 T_p tanh(μΘ/2)";
+        let basis = "gross slip: ln(T_taut/T_slack) = μΘ on the input drum, both sides with one displacement, in the middle of the travel and at its ends; in the paper's model 2 T_p tanh(μΘ/2)";
         let missing = "fastened cables do not slip as a whole; see the slack side".to_owned();
         let limit = Some(requirements.torque_nm);
         Comparison { limit, sense: Sense::AtLeast, fix, missing, basis: basis.to_owned(), required: !self.design.built.fastened, ..base }
@@ -304,7 +304,7 @@ impl Context<'_> {
 
     /// CAPS008: slip ends before the terminations.
     fn termination(&self) -> Option<Check> {
-        self.behaviour.reaches_end?;
+        self.behaviour.at_torque()?;
         let base = self.base("CAPS008", "termination", "Slip ends before the terminations", "output_wrap_min");
         let needed = self.measured.get("slip_angle_slack").into_iter().chain(self.measured.get("slip_angle_taut")).fold(0.0, f64::max);
         let unit = &self.design.units.angle;

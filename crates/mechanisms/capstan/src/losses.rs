@@ -63,7 +63,7 @@ pub fn shaft_load_n(tensions_n: &[[f64; 2]], [sin, cos]: [f64; 2]) -> f64 {
 }
 
 impl<'a> Losses<'a> {
-    /// The losses of a drive; `None` where something is not known of them ([`unknown`]).
+    /// The losses of a drive; `None` where something is not known of them (`unknown`).
     pub fn of(built: &Built, geometry: &Drive, statics: &'a Statics) -> Option<Self> {
         let friction = built.bearings.friction?;
         let arm_m = |bore_m: Option<f64>| if friction == 0.0 { Some(0.0) } else { bore_m.map(|d| 0.5 * friction * d) };

@@ -369,9 +369,9 @@ impl Describe for Bearings {
         let bore = |key, doc| length(key, doc).above(0.0, 1.0);
         v.quantity(&bore("input_bore", "Bore D of the input's bearings."), &mut self.input_bore);
         v.quantity(&bore("output_bore", "Bore D of the output's bearings."), &mut self.output_bore);
-        let drag = |key, doc| torque(key, doc).within(0.0, 1e3).default("0 N*m");
-        v.quantity(&drag("input_drag", "Torque of the input shaft without load: seals, motor."), &mut self.input_drag);
-        v.quantity(&drag("output_drag", "Torque of the output shaft without load."), &mut self.output_drag);
+        let drag = |key, doc| torque(key, doc).within(0.0, 1e3);
+        v.quantity(&drag("input_drag", "Torque of the input shaft without load, seals and motor; by default none."), &mut self.input_drag);
+        v.quantity(&drag("output_drag", "Torque of the output shaft without load; by default none."), &mut self.output_drag);
     }
 }
 

@@ -406,3 +406,15 @@ fn losses_of_a_loaded_drive_balance() {
     let bent = 0.005 * 0.5 * (tensions[0][0] + tensions[0][1]) * statics.levers_m()[0];
     near(lost, 0.0015 * load * (0.004 * 5.0 + 0.0075) + bent * 6.0, 1e-2);
 }
+
+#[test]
+fn ends_of_the_travel_count() {
+    // With a short wrap before one termination the cable slips earlier than in the middle.
+    let (behaviour, measured) = solved(&design(LONGVAL, &[]));
+    assert!(get(&measured, "gross_slip_torque_output") < behaviour.statics.gross_slip_nm().expect("held by friction"));
+    // Without a guard slip reaches the termination, and that is missed.
+    let bare = Capstan::analyse(&design(LONGVAL, &["design.output_anchor_wrap=0 deg"]), &mut |_| true);
+    assert_eq!(bare.outcome.check("termination").expect("always judged").state.word(), "missed");
+    assert!(bare.outcome.warnings.iter().any(|w| w.code == "W0702"));
+    assert!(bare.outcome.metric("taut_tension").expect("held").value > get(&measured, "taut_tension"));
+}
