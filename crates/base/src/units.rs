@@ -63,6 +63,20 @@ pub enum Dimension {
     ThermalExpansion,
     /// Frequency, Hz.
     Frequency,
+    /// Volume, m³.
+    Volume,
+    /// Power, W.
+    Power,
+    /// Voltage, V.
+    Voltage,
+    /// Electric current, A.
+    Current,
+    /// Electric resistance, Ω.
+    Resistance,
+    /// Electric charge, A·s.
+    Charge,
+    /// Torque per current, N·m/A; the same number as V·s/rad.
+    TorqueConstant,
 }
 
 struct DimensionRow {
@@ -103,6 +117,13 @@ const DIMENSIONS: &[DimensionRow] = &[
     row(Dimension::TemperatureDifference, "a difference of temperatures", exponents(0, 0, 0, 0, 1, 0, 0), "K", "20 K", "K"),
     row(Dimension::ThermalExpansion, "a thermal expansion", exponents(0, 0, 0, 0, -1, 0, 0), "1/K", "12e-6 1/K", "1/K"),
     row(Dimension::Frequency, "a frequency", exponents(0, 0, -1, 0, 0, 0, 0), "Hz", "40 Hz", "Hz, kHz"),
+    row(Dimension::Volume, "a volume", exponents(0, 3, 0, 0, 0, 0, 0), "m^3", "12 cm^3", "mm^3, cm^3, m^3"),
+    row(Dimension::Power, "a power", POWER, "W", "24 W", "mW, W, kW"),
+    row(Dimension::Voltage, "a voltage", VOLTAGE, "V", "7.2 V", "mV, V"),
+    row(Dimension::Current, "a current", exponents(0, 0, 0, 1, 0, 0, 0), "A", "1.5 A", "mA, A"),
+    row(Dimension::Resistance, "a resistance", RESISTANCE, "ohm", "2.1 ohm", "ohm, Ω, mohm, kohm"),
+    row(Dimension::Charge, "a charge", CHARGE, "A*s", "1000 mAh", "mAh, Ah, A*s"),
+    row(Dimension::TorqueConstant, "a torque constant", exponents(1, 2, -2, -1, 0, 0, 0), "N*m/A", "9.5 N*mm/A", "N*m/A, N*mm/A"),
 ];
 
 const fn row(
@@ -200,6 +221,9 @@ const FORCE: Exponents = exponents(1, 1, -2, 0, 0, 0, 0);
 const STRESS: Exponents = exponents(1, -1, -2, 0, 0, 0, 0);
 const ENERGY: Exponents = exponents(1, 2, -2, 0, 0, 0, 1);
 const POWER: Exponents = exponents(1, 2, -3, 0, 0, 0, 1);
+const VOLTAGE: Exponents = exponents(1, 2, -3, -1, 0, 0, 1);
+const RESISTANCE: Exponents = exponents(1, 2, -3, -2, 0, 0, 1);
+const CHARGE: Exponents = exponents(0, 0, 1, 1, 0, 0, 0);
 
 /// Conversion factors: SI brochure (9th ed.) and NIST SP 811 (2008), appendix B; all exact but `deg`, `turn`, `rpm` and `psi`.
 const ATOMS: &[Atom] = &[
@@ -264,6 +288,14 @@ const ATOMS: &[Atom] = &[
     atom("kW", 1.0, 3, POWER),
     atom("A", 1.0, 0, exponents(0, 0, 0, 1, 0, 0, 0)),
     atom("mA", 1.0, -3, exponents(0, 0, 0, 1, 0, 0, 0)),
+    atom("V", 1.0, 0, VOLTAGE),
+    atom("mV", 1.0, -3, VOLTAGE),
+    atom("ohm", 1.0, 0, RESISTANCE),
+    atom("Ω", 1.0, 0, RESISTANCE),
+    atom("mohm", 1.0, -3, RESISTANCE),
+    atom("kohm", 1.0, 3, RESISTANCE),
+    atom("Ah", 3600.0, 0, CHARGE),
+    atom("mAh", 3600.0, -3, CHARGE),
     atom("Hz", 1.0, 0, exponents(0, 0, -1, 0, 0, 0, 0)),
     atom("kHz", 1.0, 3, exponents(0, 0, -1, 0, 0, 0, 0)),
     atom("K", 1.0, 0, exponents(0, 0, 0, 0, 1, 0, 0)),

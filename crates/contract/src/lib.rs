@@ -11,6 +11,7 @@ pub mod edit;
 pub mod family;
 pub mod header;
 pub mod judge;
+pub mod measuring;
 pub mod metrics;
 pub mod numbers;
 pub mod objective;

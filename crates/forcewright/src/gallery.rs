@@ -52,6 +52,9 @@ pub const EXAMPLES: &[Example] = examples![
     "capstan/haptic-handle",
     "capstan/quadruped-leg",
     "capstan/pointing-stage",
+    "lavt/butin-1",
+    "lavt/butin-2",
+    "lavt/butin-3",
 ];
 
 macro_rules! data {

@@ -32,6 +32,7 @@ pub use forcewright_contract as contract;
 pub use forcewright_curves as curves;
 pub use forcewright_elements as elements;
 pub use forcewright_fabricate as fabricate;
+pub use forcewright_lavt as lavt;
 pub use forcewright_model as model;
 pub use forcewright_report as report;
 pub use forcewright_study as study;
@@ -56,6 +57,7 @@ pub static FAMILIES: &[&dyn Family] = &[
     &Entry::<forcewright_compliant::Compliant>::new(),
     &Entry::<forcewright_cam::Cam>::new(),
     &Entry::<forcewright_capstan::Capstan>::new(),
+    &Entry::<forcewright_lavt::Lavt>::new(),
 ];
 
 /// A family by its name in project files.

@@ -1,8 +1,10 @@
 //! Machine elements: the material catalogue, line contact, springs, cables, grooves and wrap friction. Theory: `docs/theory/elements.md`.
 
 pub mod cables;
+pub mod gears;
 pub mod grooves;
 pub mod hertz;
 pub mod materials;
 pub mod springs;
 pub mod wrap;
+pub mod wrap_spring;

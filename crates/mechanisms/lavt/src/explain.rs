@@ -1,0 +1,142 @@
+//! The long story behind every code of this family.
+
+use forcewright_base::diagnostics::Explanation;
+
+const fn code(code: &'static str, title: &'static str, text: &'static str) -> Explanation {
+    Explanation { code, title, text }
+}
+
+/// Checks `LAVT…`, errors of the design `E08…`, warnings `W08…`.
+pub(crate) const CODES: &[Explanation] = &[
+    code(
+        "LAVT001",
+        "Torque at which it shifts",
+        "Torque at the output at which the spring reaches the bore and mode I ends: R τ_t/(1 − R), with τ_t = EI δ_b/(r (r + δ_b)). It must lie above what the hand needs to close on nothing - friction, glove - or the fingers are slow from the beginning. A spring that slips first is judged by the torque at which it slips.",
+    ),
+    code(
+        "LAVT002",
+        "Torque at the output",
+        "Torque at the output with the required torque at the input, τ_in/R − τ_b less losses, as far as the bore holds. A spring that slips before it shifts, or a bore that lets go, limits it to less.",
+    ),
+    code(
+        "LAVT003",
+        "Speed in mode I over mode II",
+        "1/R = 1 + Z_ring/Z_sun. The paper prints ω_I/ω_II ≥ 5; its reason, not to lose the sense of control while grasping, asks for at most 5.",
+    ),
+    code(
+        "LAVT004",
+        "Efficiency",
+        "Power at the output over power at the input in mode II, 1 − R τ_b/τ_in, less losses. The slip of the spring on the hub costs the torque τ_b at any load.",
+    ),
+    code("LAVT005", "Limit on a metric", "A limit of `[requirements.limits]`, on any metric by its name."),
+    code(
+        "LAVT006",
+        "Shifts before it slips",
+        "The spring must reach the bore (τ_t) before it slips on the hub (τ_b). With finite turns τ_b = M_A (1 − exp(−2π (N_A − 0.2) μ)): less than the moment M_A of the interference, and a free end costs 0.2 turn. With δ_a = δ_b, configuration 1 of the paper, no friction is enough: what was built is a torque limiter. The paper's eq. (25) does not see it.",
+    ),
+    code(
+        "LAVT007",
+        "Shifts with the least friction and the worst gaps",
+        "The same at the corners of the tolerances of wire, spring, hub and bore, with the least friction. What counts is δ_a − δ_b = (hub − bore)/2 + wire: the diameter of the spring cancels. A tenth of a millimetre decides.",
+    ),
+    code(
+        "LAVT008",
+        "Bore holds the input torque",
+        "In mode II the ring pulls on the bore with τ_in (1 − R)/R. The bore has bent the coil to its own curvature, so only what exceeds τ_t presses on it: τ_S − τ_t ≤ (τ_b − τ_t) exp(2π N_B μ). The paper's eq. (28) takes the whole of τ_b and promises four times as much; a curved beam in frictional contact confirms the smaller value. Judged as designed, and at the worst corner of the tolerances with the least friction.",
+    ),
+    code(
+        "LAVT009",
+        "Hub holds the input torque in the opening direction",
+        "When the hand opens, the torque tightens the spring on the hub, which holds M_A (exp(2π N_A μ) − 1), eq. (29), and mode I stays. Only needed if the hand opens against the full torque; usually it does not, and the check is advice.",
+    ),
+    code(
+        "LAVT010",
+        "Stress of the wire",
+        "Largest bending stress on the hub or in the bore, with the factor of the curved wire, against 0.7 of the least tensile strength (EN 13906-3). Without `requirements.safety_factor` a factor of 1 is asked for, as advice.",
+    ),
+    code(
+        "LAVT011",
+        "Coil is supported up to the ring",
+        "A coil between the bore and its end at the ring carries the whole torque of the clutch alone: 4257 MPa at 400 N·mm in the paper's design. So the bore must reach up to the ring, `unsupported_turns = 0`.",
+    ),
+    code(
+        "LAVT012",
+        "Planets keep clear of each other",
+        "Gap between the tip circles of neighbouring planets, 2 a sin(π/N) − 2 r_a; half a module is kept.",
+    ),
+    code(
+        "LAVT013",
+        "Teeth are not undercut",
+        "Profile shift of sun and planets above the least without undercut, x = h − (z/2) sin² α with the depth h of the straight flank of the rack. Undercut teeth are weaker and have a shorter flank; they run.",
+    ),
+    code(
+        "LAVT014",
+        "Teeth do not interfere",
+        "The least room between flanks, fillets and tips of planet, ring and sun: involute, trochoid and trimming interference. The paper's unshifted 12, 18, 48 teeth meet at the ring. Shift the profiles or shorten the tips.",
+    ),
+    code(
+        "LAVT015",
+        "Contact ratio",
+        "Length of the path of contact between tips, form circles and interference points over the base pitch. Below 1 a pair of teeth lets go before the next one meets; 1.1 is kept for errors of making.",
+    ),
+    code(
+        "LAVT016",
+        "Bending of the teeth",
+        "Lewis' bending stress at the root, the whole load at the tip of one tooth of the most loaded planet, without dynamics or stress concentration, against `material.gears.bending_strength`.",
+    ),
+    code(
+        "LAVT017",
+        "Pressure between flanks",
+        "Hertz pressure at the pitch point of the most loaded planet against `material.gears.flank_strength`.",
+    ),
+    code(
+        "E0801",
+        "Gears without a common axis",
+        "Sun, planets and ring turn about one axis if the ring has as many teeth as the sun and twice a planet; profile shifts make up for one or two.",
+    ),
+    code(
+        "E0802",
+        "Planets that cannot be put in",
+        "Equally spaced planets go between sun and ring if the teeth of both together are a multiple of their number. The paper asks for (sun + planet), which is too strict for even numbers.",
+    ),
+    code(
+        "E0803",
+        "Spring loose on the hub",
+        "The hub must be larger than the inner diameter of the free spring: its interference makes the friction.",
+    ),
+    code(
+        "E0804",
+        "Spring already in the bore",
+        "The bore must be larger than the outer diameter of the free spring: the gap sets the torque of the shift.",
+    ),
+    code(
+        "E0805",
+        "Coil that cannot be wound",
+        "Mean diameter over wire diameter below 4: the wire breaks in coiling, and thin-wire mechanics do not hold.",
+    ),
+    code(
+        "E0806",
+        "Wire that is not known",
+        "The grade is not in the catalogue, its diameter is outside of the standard, or no stiffness is given.",
+    ),
+    code(
+        "E0807",
+        "Hand or motor that is not complete",
+        "A lever and a table of levers exclude each other; the first column of a table must rise; a voltage must end above zero.",
+    ),
+    code(
+        "W0801",
+        "The corrected model does not confirm it",
+        "The project uses the paper's model. The corrected one - finite turns on the hub, a bore that only what exceeds τ_t presses on - finds that the design slips. Use `model.source = \"corrected\"` for a design.",
+    ),
+    code(
+        "W0802",
+        "What happens depends on the friction",
+        "At one end of the range of friction the transmission does something else than at the other.",
+    ),
+    code(
+        "W0803",
+        "Friction without a range",
+        "Friction is given as one number. Nobody knows it that well, and the design depends on it: give a range.",
+    ),
+];

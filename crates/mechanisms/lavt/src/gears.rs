@@ -1,0 +1,129 @@
+//! The planetary gears of a design: whether they run, and what they lose.
+
+use forcewright_elements::gears::interference::{Condition, Margin, Unit, least_shift, mesh_margins};
+use forcewright_elements::gears::planetary::PlanetarySet;
+use forcewright_elements::gears::{Kind, Wheel, WheelSpec};
+
+use crate::design::{Design, Gears};
+use crate::metrics::Measured;
+
+/// The gears of a design.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Train {
+    /// Sun, planets, ring on one centre distance.
+    pub set: PlanetarySet,
+    /// Least profile shift over that without undercut, of sun and planets, modules.
+    pub undercut: f64,
+    /// The least room between teeth that must not meet, and what it keeps clear of.
+    pub tightest: Tightest,
+    /// Part of the power that the meshes lose in mode II.
+    loss: f64,
+    friction: Option<f64>,
+}
+
+/// The least room between teeth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tightest {
+    /// m; of conditions that are angles, along the tip circle of the planet.
+    pub room_m: f64,
+    /// Mesh with the ring, or with the sun.
+    pub at_ring: bool,
+    /// What it keeps clear of.
+    pub condition: Condition,
+}
+
+/// Sun, planet and ring with their numbers of teeth, shifts and tips.
+pub(crate) fn wheels(gears: &Gears) -> Result<[Wheel; 3], String> {
+    let wheel = |i: usize| {
+        // Half of the backlash of a mesh is taken from each of its teeth; the planet is in both.
+        Wheel::new(WheelSpec {
+            kind: if i == 2 { Kind::Internal } else { Kind::External },
+            teeth: gears.teeth[i],
+            module_m: gears.module_m,
+            rack: gears.rack,
+            profile_shift: gears.shift[i],
+            tip_shortening: gears.shortening[i],
+            thinning_m: 0.5 * gears.backlash_m,
+        })
+        .map_err(|error| format!("{}: {error}", ["sun", "planet", "ring"][i]))
+    };
+    Ok([wheel(0)?, wheel(1)?, wheel(2)?])
+}
+
+impl Train {
+    /// The gears of a design.
+    ///
+    /// # Errors
+    /// Why there are none, in words.
+    pub fn of(design: &Design) -> Result<Self, String> {
+        let gears = &design.built.gears;
+        let [sun, planet, ring] = wheels(gears)?;
+        let set = PlanetarySet::new(sun, planet, ring, gears.planets).map_err(|error| error.to_string())?;
+        let undercut = [sun, planet].iter().map(|w| w.spec.profile_shift - least_shift(w)).fold(f64::INFINITY, f64::min);
+        let loss = match gears.friction {
+            Some(friction) => {
+                let train = set.train(friction).map_err(|error| error.to_string())?;
+                // Without a drag of the clutch, which the statics take for themselves.
+                1.0 - train.reduced(1.0, 0.0).map_err(|error| error.to_string())?.1
+            }
+            None => 0.0,
+        };
+        Ok(Self { set, undercut, tightest: tightest(&set), loss, friction: gears.friction })
+    }
+
+    /// Part of the power that the meshes lose in mode II.
+    pub fn mesh_loss(&self) -> f64 {
+        self.loss
+    }
+
+    /// What would mend undercut and interference.
+    pub(crate) fn advice(&self) -> String {
+        "shift the profiles: `design.gears.profile_shift` and `tip_shortening`; `forcewright synthesise` finds them".to_owned()
+    }
+
+    /// The least room in words.
+    pub(crate) fn tightest(&self) -> String {
+        format!("here {} of planet and {}", self.tightest.condition, if self.tightest.at_ring { "ring" } else { "sun" })
+    }
+}
+
+/// Whether a margin is room between teeth that must not meet.
+fn is_interference(margin: &Margin) -> bool {
+    use Condition as C;
+    matches!(margin.condition, C::PinionInterference | C::WheelInterference | C::PinionFillet | C::WheelFillet | C::Trochoid | C::Trimming)
+}
+
+fn tightest(set: &PlanetarySet) -> Tightest {
+    let planet_m = set.planet_ring.pinion.tip_radius_m;
+    let of = |mesh, at_ring| {
+        mesh_margins(mesh, 0.0).filter(is_interference).map(move |margin| {
+            let arm_m = if margin.condition.unit() == Unit::Radian { planet_m } else { 1.0 };
+            Tightest { room_m: margin.value * arm_m, at_ring, condition: margin.condition }
+        })
+    };
+    let none = Tightest { room_m: f64::INFINITY, at_ring: true, condition: Condition::Trimming };
+    of(&set.planet_ring, true).chain(of(&set.sun_planet, false)).fold(none, |a, b| if b.room_m < a.room_m { b } else { a })
+}
+
+/// Metrics of the gears, and of the room that the whole takes.
+pub(crate) fn measure(m: &mut Measured, design: &Design, train: &Train) {
+    let set = &train.set;
+    m.set("planet_gap", set.neighbour_gap_m());
+    for (name, mesh) in [("contact_ratio_sun", &set.sun_planet), ("contact_ratio_ring", &set.planet_ring)] {
+        let path = mesh.path();
+        m.set(name, path.contact_ratio(path.usable));
+    }
+    m.set("undercut_margin", train.undercut);
+    m.set("interference_margin", train.tightest.room_m);
+    m.set("mesh_efficiency", train.friction.map(|_| 1.0 - train.loss));
+    let built = &design.built;
+    let spring = &built.spring;
+    let ring_m = 2.0 * (set.planet_ring.wheel.root_radius_m + design.making.ring_wall_m);
+    let outer_m = ring_m.max(built.bore_m + 2.0 * design.making.ring_wall_m);
+    let turns = spring.hub_turns + spring.free_turns + spring.bore_turns + spring.unsupported_turns;
+    // A coil more for the ends; turns lie beside each other, with a tenth of the wire between them.
+    let length_m = built.gears.face_m + (turns + 1.0) * 1.1 * spring.wire_m;
+    m.set("outer_diameter", outer_m);
+    m.set("length", length_m);
+    m.set("envelope_volume", 0.25 * std::f64::consts::PI * outer_m * outer_m * length_m);
+}

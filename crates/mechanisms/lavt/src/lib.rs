@@ -1,0 +1,106 @@
+//! Two-speed load-adaptive transmissions of planetary gears and a wrap-spring clutch: the family.
+//!
+//! Source: C. Butin, D. Chablat, Y. Aoustin, D. Gouaillier, "Design of a Two-Speed Load Adaptive Variable Transmission for Energetic
+//! Optimization of an Accessible Prosthetic Hand", J. Mechanisms Robotics 15(1), 2023. Theory, corrections and limits of validity:
+//! `docs/theory/lavt.md`.
+
+mod analysis;
+mod checks;
+mod design;
+mod explain;
+mod figures;
+mod gears;
+mod metrics;
+mod spec;
+mod statements;
+mod statics;
+mod study;
+
+use forcewright_base::diagnostics::{Diagnostics, Explanation};
+use forcewright_contract::family::{Analysis, Mechanism, Progress};
+use forcewright_contract::measuring::{self, Many};
+use forcewright_contract::metrics::results;
+use forcewright_contract::reproduction::Reproduction;
+use forcewright_contract::studies::{Free, Purpose, Studies};
+use forcewright_model::{NoPart, Outcome, PartSet};
+use forcewright_study::evaluator::Evaluator;
+use forcewright_study::task::Task;
+
+use metrics::LavtMetrics;
+use study::Transmissions;
+
+pub use analysis::{Behaviour, NoTransmission, measure};
+pub use design::{
+    Battery, Built, Design, DisplayUnits, GearMaterial, Gears, Hand, Lever, Loss, Making, Motor, Requirements, Scatter, Source, Spring,
+    WireMaterial,
+};
+pub use gears::{Tightest, Train};
+pub use metrics::{METRICS, Measured};
+pub use spec::Spec;
+pub use statics::{State, Statics, clutch};
+
+/// The family.
+pub struct Lavt;
+
+impl Mechanism for Lavt {
+    type Spec = Spec;
+    type Design = Design;
+
+    const ID: &'static str = "lavt";
+    const TITLE: &'static str = "Two-speed transmission";
+
+    fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Design> {
+        design::resolve(spec, diagnostics)
+    }
+
+    fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
+        let stated = [statements::model(design), statements::limits(design)];
+        let behaviour = match Behaviour::of(design) {
+            Ok(behaviour) => behaviour,
+            Err(error) => return Analysis::refused::<Self>(&design.title, error.to_string(), stated, statements::sources(design)),
+        };
+        progress(1.0);
+        let measured = measure(design, &behaviour);
+        let display = |i: usize| checks::display_unit(design.requirements.as_ref(), &design.units, i);
+        let outcome = Outcome {
+            mechanism: Self::ID,
+            title: design.title.clone(),
+            status: statements::status(design, &behaviour),
+            error_estimate: None,
+            metrics: results::<LavtMetrics>(|i| measured.value(i), display),
+            checks: checks::checks(design, &behaviour, &measured),
+            curves: figures::curves(design, &behaviour),
+            counters: Vec::new(),
+            sources: statements::sources(design),
+            warnings: statements::warnings(design, &behaviour),
+        };
+        let figures = figures::figures(design, &behaviour, &measured);
+        let [model, limits] = stated;
+        Analysis { outcome, figures, model, limits }
+    }
+
+    fn parts(design: &Design) -> Result<PartSet, NoPart> {
+        let _ = design;
+        Err(NoPart { code: "E0820", message: String::new(), help: String::new() })
+    }
+
+    fn studies(spec: &Spec) -> &Studies {
+        &spec.studies
+    }
+
+    fn evaluator(_: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
+        Some(Box::new(Many::<Transmissions>::new(design, free, diagnostics)?))
+    }
+
+    fn task(spec: &Spec, design: &Design, free: &[Free], _: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
+        measuring::task::<Transmissions>(design, &spec.studies.optimise.objective, free, diagnostics)
+    }
+
+    fn explanations() -> &'static [Explanation] {
+        explain::CODES
+    }
+
+    fn reproductions() -> &'static [Reproduction] {
+        &[]
+    }
+}
