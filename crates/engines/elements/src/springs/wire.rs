@@ -26,8 +26,12 @@ pub struct Wire {
     pub extension_limit: Property,
     /// Permissible shear stress of a compression spring at its solid length, over the least tensile strength.
     pub compression_limit: Property,
+    /// Permissible static bending stress of a torsion spring, over the least tensile strength.
+    pub bending_limit: Property,
     /// Diameters that makers stock, m, ascending.
     pub diameters_m: Vec<f64>,
+    /// Nominal diameters and the deviation (±) permitted up to each, m, ascending; from 0.28 mm on.
+    pub diameter_tolerances_m: Vec<[f64; 2]>,
     /// Grades by rising strength.
     pub grades: Vec<Grade>,
 }
@@ -66,10 +70,23 @@ fn read(data: &str) -> Result<Wire, String> {
     let table = DeTable::parse(data).map_err(|error| error.to_string())?;
     known_keys(table.get_ref(), &["wire", "grade"])?;
     let common = table.get_ref().get("wire").and_then(|item| item.get_ref().as_table()).ok_or("no [wire]")?;
-    known_keys(common, &["shear_modulus", "young_modulus", "density", "extension_limit", "compression_limit", "diameters"])?;
+    known_keys(
+        common,
+        &[
+            "shear_modulus",
+            "young_modulus",
+            "density",
+            "extension_limit",
+            "compression_limit",
+            "bending_limit",
+            "diameter_tolerances",
+            "diameters",
+        ],
+    )?;
     let needed = |key: &str, dimension: Dimension| property(common, key, dimension)?.ok_or_else(|| format!("no `{key}`"));
     let grades = table.get_ref().get("grade").and_then(|list| list.get_ref().as_array()).ok_or("no [[grade]]")?;
     let diameters = common.get("diameters").and_then(|list| list.get_ref().as_array()).ok_or("no `diameters`")?;
+    let tolerances = common.get("diameter_tolerances").and_then(|list| list.get_ref().as_array()).ok_or("no `diameter_tolerances`")?;
     let diameter = |item: &DeValue| si(item.as_str().ok_or("a diameter is not text")?, Dimension::Length);
     Ok(Wire {
         shear_modulus_pa: needed("shear_modulus", Dimension::Stress)?,
@@ -77,12 +94,23 @@ fn read(data: &str) -> Result<Wire, String> {
         density_kg_per_m3: needed("density", Dimension::Density)?,
         extension_limit: needed("extension_limit", Dimension::Ratio)?,
         compression_limit: needed("compression_limit", Dimension::Ratio)?,
+        bending_limit: needed("bending_limit", Dimension::Ratio)?,
         diameters_m: diameters.iter().map(|item| diameter(item.get_ref())).collect::<Result<_, _>>()?,
+        diameter_tolerances_m: tolerances.iter().map(|item| read_tolerance(item.get_ref())).collect::<Result<_, _>>()?,
         grades: grades
             .iter()
             .map(|item| read_grade(item.get_ref().as_table().ok_or("`grade` is not a list of tables")?))
             .collect::<Result<_, _>>()?,
     })
+}
+
+fn read_tolerance(item: &DeValue) -> Result<[f64; 2], String> {
+    let pair = item.as_array().ok_or("a tolerance is not a list")?;
+    let length = |item: &DeValue| si(item.as_str().ok_or("a tolerance is not text")?, Dimension::Length);
+    match (pair.len(), pair.first(), pair.get(1)) {
+        (2, Some(up_to), Some(tolerance)) => Ok([length(up_to.get_ref())?, length(tolerance.get_ref())?]),
+        _ => Err("a tolerance is not a pair".to_owned()),
+    }
 }
 
 fn read_grade(table: &DeTable) -> Result<Grade, String> {
@@ -141,11 +169,15 @@ mod tests {
         let wire = wire();
         assert!(wire.diameters_m.windows(2).all(|pair| pair[0] < pair[1]) && wire.diameters_m.len() > 30);
         // An isotropic solid: E/G = 2(1 + ν) with ν between 0.25 and 0.3.
+        assert!(wire.diameter_tolerances_m.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] < pair[1][1]));
         let ratio = wire.young_modulus_pa.value / wire.shear_modulus_pa.value;
         assert!((2.5..2.6).contains(&ratio), "{ratio}");
         let limits = [&wire.extension_limit, &wire.compression_limit];
         assert!(limits.iter().all(|limit| (0.4..0.6).contains(&limit.value)));
-        let properties = [&wire.shear_modulus_pa, &wire.young_modulus_pa, &wire.density_kg_per_m3].into_iter().chain(limits);
+        let properties = [&wire.shear_modulus_pa, &wire.young_modulus_pa, &wire.density_kg_per_m3]
+            .into_iter()
+            .chain(limits)
+            .chain([&wire.bending_limit]);
         for property in properties.chain(wire.grades.iter().map(|grade| &grade.at_1_mm_pa)) {
             for key in property.source_keys() {
                 assert!(REFERENCES.contains(&format!("{{{key},")), "`{key}` is not in REFERENCES.bib");
