@@ -1,7 +1,7 @@
 //! Wrap spring of a selector clutch: a coil of round wire that sits tight on a hub, opens under torque, and grips a bore.
 //!
-//! One end of the coil is fastened to a body S. At the other end `N_A` turns hold a hub A by interference; next to S, `N_B` turns stand in a
-//! bore B with a gap. A torque on S in the sense that opens the coil is carried to A until the coil reaches the bore at `τ_t`; then the bore
+//! One end of the coil is fastened to a body S. At the other end `N_A` turns hold a hub A by interference; the other `N_f` turns are free, and
+//! `N_B` of them, next to S, stand in a bore B with a gap. A torque on S in the sense that opens the coil is carried to A until the coil reaches the bore at `τ_t`; then the bore
 //! takes the rest, and at the hub the coil slips at `τ_b`. In the other sense the coil locks on the hub. The equations are those of Butin
 //! et al. 2023 (`butin2023`), corrected: theory, evidence and limits in `docs/theory/wrap-spring.md`.
 //!
@@ -40,26 +40,26 @@
 //! assert_eq!(limits.state(0.4), Ok(State::Gripped));
 //! ```
 
-mod fatigue;
 mod limits;
 mod making;
+mod strength;
 mod stress;
 mod wear;
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-pub use fatigue::{Duty, Endurance, Life, Surface, endurance};
 use forcewright_base::maths::{exp, exp_m1};
 pub use limits::{Limits, State};
-pub use making::{Coil, Effect, Hand, Sense, Winding, effect, leg_bending_pa, mean_diameter_tolerance_m, wire_tolerance_m};
+pub use making::{Coil, Effect, Hand, Leg, Sense, Winding, effect, leg, mean_diameter_tolerance_m, wire_tolerance_m};
+pub use strength::{Duty, Endurance, Life, StaticStrength, Surface, endurance, static_strength};
 pub use stress::{BendingFactors, Stresses, bending_pa, wahl_factors, winkler_factors};
 pub use wear::{AxialWalk, HubWear};
 
 /// Turns by which a hub of `N_A` turns counts less in the default model, for the end of the coil that lies free on it.
 ///
-/// The default of the project. A rod with unilateral contact loses less: 0.05 turn at each end of the contact when friction is small
-/// ([`END_LOSS_ROD_TURNS`] for both). The default is therefore on the safe side in what needs friction on the hub.
+/// A cautious value: 17 % less torque in the closing sense at a friction of 0.15, as much as measurements were below the formula without it
+/// (up to 20 %, Wiebusch 1939 as cited in `butin2023`). A rod with unilateral contact loses less, [`END_LOSS_ROD_TURNS`].
 pub const END_LOSS_TURNS: f64 = 0.2;
 
 /// What a thin rod loses at the two ends of its contact on a hub, in turns, as friction goes to 0: twice `(θ₀ − tan(θ₀/2))/2π` with the
@@ -166,12 +166,14 @@ pub struct Dimensions {
     pub hub_turns: f64,
     /// Turns in the bore; at least 0.
     pub bore_turns: f64,
-    /// Free turns that open before the bore is reached; at least 0.
+    /// All turns that are off the hub, those that come to lie in the bore among them: they open until the bore is reached. The `N_f` of
+    /// eq. (30); at least `bore_turns`.
     pub free_turns: f64,
 }
 
 impl Dimensions {
-    /// From diameters as on a drawing (m): hub and bore, and the outer diameter of the free coil, which both gaps share. `δ_a` is half of
+    /// From diameters as on a drawing (m): hub and bore, and the outer diameter of the free coil, which both gaps share; `turns` on the hub, in
+    /// the bore, and all off the hub. `δ_a` is half of
     /// what the hub exceeds the inner diameter of the coil by; `δ_b` half of what the bore exceeds its outer diameter by.
     pub fn from_diameters(wire_m: f64, outer_m: f64, hub_m: f64, bore_m: f64, young_modulus_pa: f64, turns: [f64; 3]) -> Self {
         Self {
@@ -250,6 +252,9 @@ impl WrapSpring {
         positive("hub_turns", d.hub_turns)?;
         not_negative("bore_turns", d.bore_turns)?;
         not_negative("free_turns", d.free_turns)?;
+        if d.free_turns < d.bore_turns {
+            return Err(WrapSpringError::Value { name: "free_turns", value: d.free_turns });
+        }
         not_negative("end_loss_turns", options.end_loss_turns)?;
         let index = 2.0 * d.neutral_radius_m / d.wire_m;
         if index <= 1.0 {
@@ -306,7 +311,7 @@ impl WrapSpring {
     }
 
     /// Turns by which S turns against the hub before the bore is reached, from a coil without torque. Exact for a wire that keeps its
-    /// length, `N_F δ_b/(r_n + δ_b)`; linear in [`Model::Paper`], `N_F δ_b/r_n`, eq. (30).
+    /// length, `N_f δ_b/(r_n + δ_b)`; linear in [`Model::Paper`], `N_f δ_b/r_n`, eq. (30).
     ///
     /// With a planetary gear of ratio R ahead of it and a blocked output, the input turns `(1 − R)/R` times that, eq. (31).
     pub fn dead_turns(&self) -> f64 {

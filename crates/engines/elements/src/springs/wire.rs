@@ -26,6 +26,8 @@ pub struct Wire {
     pub extension_limit: Property,
     /// Permissible shear stress of a compression spring at its solid length, over the least tensile strength.
     pub compression_limit: Property,
+    /// Permissible static bending stress of a torsion spring, over the least tensile strength.
+    pub bending_limit: Property,
     /// Diameters that makers stock, m, ascending.
     pub diameters_m: Vec<f64>,
     /// Nominal diameters and the deviation (±) permitted up to each, m, ascending; from 0.28 mm on.
@@ -70,7 +72,16 @@ fn read(data: &str) -> Result<Wire, String> {
     let common = table.get_ref().get("wire").and_then(|item| item.get_ref().as_table()).ok_or("no [wire]")?;
     known_keys(
         common,
-        &["shear_modulus", "young_modulus", "density", "extension_limit", "compression_limit", "diameter_tolerances", "diameters"],
+        &[
+            "shear_modulus",
+            "young_modulus",
+            "density",
+            "extension_limit",
+            "compression_limit",
+            "bending_limit",
+            "diameter_tolerances",
+            "diameters",
+        ],
     )?;
     let needed = |key: &str, dimension: Dimension| property(common, key, dimension)?.ok_or_else(|| format!("no `{key}`"));
     let grades = table.get_ref().get("grade").and_then(|list| list.get_ref().as_array()).ok_or("no [[grade]]")?;
@@ -83,6 +94,7 @@ fn read(data: &str) -> Result<Wire, String> {
         density_kg_per_m3: needed("density", Dimension::Density)?,
         extension_limit: needed("extension_limit", Dimension::Ratio)?,
         compression_limit: needed("compression_limit", Dimension::Ratio)?,
+        bending_limit: needed("bending_limit", Dimension::Ratio)?,
         diameters_m: diameters.iter().map(|item| diameter(item.get_ref())).collect::<Result<_, _>>()?,
         diameter_tolerances_m: tolerances.iter().map(|item| read_tolerance(item.get_ref())).collect::<Result<_, _>>()?,
         grades: grades
@@ -162,7 +174,10 @@ mod tests {
         assert!((2.5..2.6).contains(&ratio), "{ratio}");
         let limits = [&wire.extension_limit, &wire.compression_limit];
         assert!(limits.iter().all(|limit| (0.4..0.6).contains(&limit.value)));
-        let properties = [&wire.shear_modulus_pa, &wire.young_modulus_pa, &wire.density_kg_per_m3].into_iter().chain(limits);
+        let properties = [&wire.shear_modulus_pa, &wire.young_modulus_pa, &wire.density_kg_per_m3]
+            .into_iter()
+            .chain(limits)
+            .chain([&wire.bending_limit]);
         for property in properties.chain(wire.grades.iter().map(|grade| &grade.at_1_mm_pa)) {
             for key in property.source_keys() {
                 assert!(REFERENCES.contains(&format!("{{{key},")), "`{key}` is not in REFERENCES.bib");

@@ -56,16 +56,16 @@ impl Limits {
                 None if torque_nm <= self.hub_slip_nm => State::Opening,
                 None => State::SlipsBeforeShift,
                 Some(_) if torque_nm <= self.transition_nm => State::Opening,
-                Some(grip_nm) if torque_nm > grip_nm => State::SlipsInBore,
                 Some(_) if torque_nm <= self.hub_slip_nm => State::AtBore,
-                Some(_) => State::Gripped,
+                Some(grip_nm) if torque_nm <= grip_nm => State::Gripped,
+                Some(_) => State::SlipsInBore,
             }
         })
     }
 
-    /// What the state tells is held beyond the transition, N·m: by the bore, or by the hub where the bore is not reached.
+    /// Largest torque on S in the opening sense that is held, N·m: by the bore, or by the hub where the bore holds less or is not reached.
     pub fn largest_nm(&self) -> f64 {
-        self.grip_nm.unwrap_or(self.hub_slip_nm)
+        self.grip_nm.unwrap_or(0.0).max(self.hub_slip_nm)
     }
 }
 
@@ -124,7 +124,7 @@ impl WrapSpring {
     }
 
     /// Least coefficient of friction with which the bore holds a torque on S (N·m, at least 0) while the hub slips; absent if none is
-    /// enough. At least the friction needed to reach the bore. In [`Model::Paper`] by eq. (28).
+    /// enough. At least the friction needed to reach the bore; in [`Model::Paper`] that of eq. (28) alone.
     ///
     /// # Errors
     /// [`WrapSpringError::Value`]

@@ -55,7 +55,7 @@ pub struct Coil {
     pub wire_m: f64,
     /// Mean radius, m; above half of the wire diameter.
     pub radius_m: f64,
-    /// All turns, m; above 0.
+    /// All turns; above 0.
     pub turns: f64,
     /// Gap between neighbouring turns, m; at least 0, and 0 for a close-wound coil.
     pub gap_m: f64,
@@ -115,15 +115,24 @@ impl Coil {
     }
 }
 
-/// Force (N) at an end leg that carries a torque (N·m), and the bending stress (Pa) at the inside of the bend that joins it to the coil.
+/// What an end leg, or tang, carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// Force on it, N.
+    pub force_n: f64,
+    /// Bending stress at the inside of its bend, Pa.
+    pub stress_pa: f64,
+}
+
+/// An end leg that carries a torque (N·m, at least 0): its force acts at a distance from the axis (`arm_m`, m), and at another from the bend
+/// that joins the leg to the coil (`leg_m`, m).
 ///
-/// The force is `torque/arm` with its distance from the axis (`arm_m`, m); it bends the wire at the bend by force times the length of the
-/// leg from there (`leg_m`, m). The stress is that with Wahl's inner factor for the index of the bend, twice its mean radius over the wire.
-/// A tang that is bent sharply has the largest stress of the whole spring.
+/// The stress is that of bending with Wahl's inner factor for the index of the bend, twice its mean radius over the wire. A tang that is
+/// bent sharply has the largest stress of the whole spring.
 ///
 /// # Errors
-/// [`WrapSpringError::Value`]
-pub fn leg_bending_pa(torque_nm: f64, arm_m: f64, leg_m: f64, bend_radius_m: f64, wire_m: f64) -> Result<[f64; 2], WrapSpringError> {
+/// [`WrapSpringError::Value`]: with the `index` of the bend if that has no inner radius.
+pub fn leg(torque_nm: f64, arm_m: f64, leg_m: f64, bend_radius_m: f64, wire_m: f64) -> Result<Leg, WrapSpringError> {
     not_negative("torque_nm", torque_nm)?;
     positive("arm_m", arm_m)?;
     not_negative("leg_m", leg_m)?;
@@ -131,7 +140,7 @@ pub fn leg_bending_pa(torque_nm: f64, arm_m: f64, leg_m: f64, bend_radius_m: f64
     positive("wire_m", wire_m)?;
     let force_n = torque_nm / arm_m;
     let factor = wahl_factors(2.0 * bend_radius_m / wire_m)?.inner;
-    Ok([force_n, factor * bending_pa(force_n * leg_m, wire_m)])
+    Ok(Leg { force_n, stress_pa: factor * bending_pa(force_n * leg_m, wire_m) })
 }
 
 /// Permissible deviation (± m) of the diameter of spring wire of EN 10270-1; absent outside 0.28 … 11 mm, for which it was at hand. See

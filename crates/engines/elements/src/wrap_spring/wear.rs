@@ -16,14 +16,14 @@ pub struct HubWear {
     pub depth_m: f64,
 }
 
-/// What friction does to a slipping coil along its axis. These are bounds of our own: the paper only says that the force is there.
+/// What friction can do to a coil along its axis. These are bounds of our own: the paper only says that there is a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxialWalk {
     /// Lead angle of the coil on the hub, rad.
     pub lead_rad: f64,
     /// Largest axial force of friction, N.
     pub force_n: f64,
-    /// Largest axial travel per turn of slip, m: one pitch, when the coil slides along its own wire like a screw.
+    /// Largest axial travel per turn of slip, m: one pitch, when the coil slides along its own wire like a screw in its nut.
     pub travel_per_turn_m: f64,
     /// By how much that force stretches the free turns, m.
     pub stretch_m: f64,
@@ -54,12 +54,12 @@ impl WrapSpring {
         })
     }
 
-    /// The screw effect while the coil slips on the hub in the opening sense, for a pitch (m, at least 0), a coefficient of friction (at
-    /// least 0) and the shear modulus of the wire (Pa).
+    /// The screw effect, bounded, for a pitch (m, at least 0), a coefficient of friction (at least 0) and the shear modulus of the wire (Pa).
     ///
-    /// Friction opposes the slip. If the coil is kept from moving along the axis, it slips around the hub, and friction has no axial part;
-    /// if it is free to, it slips along its wire, and the friction `τ_b/r` has the axial part `τ_b sin α/r`. That is the most that can
-    /// ever be asked of what keeps the coil in place. It stretches the `N_F` free turns as an extension spring, rate `G d⁴/(64 r³ N_F)`.
+    /// Friction opposes the slip. A coil that stands still while the hub turns under it gets forces around the axis only. Where wire moves
+    /// along itself, as when the coil opens and a slip zone grows, friction acts along the wire: at most `τ_b/r` over the hub, with the axial
+    /// part `τ_b sin α/r`. What keeps the coil in place has to carry that. It stretches the `N_f` free turns as an extension spring, rate
+    /// `G d⁴/(64 r³ N_f)`.
     ///
     /// # Errors
     /// [`WrapSpringError::Value`]
