@@ -101,7 +101,7 @@ pub struct Spring {
     pub inner_m: f64,
     /// Turns on the hub.
     pub hub_turns: f64,
-    /// Turns between hub and bore.
+    /// Turns off the hub, those in the bore among them.
     pub free_turns: f64,
     /// Turns in the bore.
     pub bore_turns: f64,
@@ -411,6 +411,14 @@ fn check_spring(spec: &Spec, built: &Built, diagnostics: &mut Diagnostics) {
             Diagnostic::error("E0804", at, "the spring is in the bore before it is loaded")
                 .label("this bore")
                 .help(format!("it must be larger than the outer diameter of the free spring, {}", length(inner_m + 2.0 * wire_m))),
+        );
+    }
+    if built.spring.free_turns < built.spring.bore_turns {
+        let at = span_of(spec.design.spring.free_turns.as_ref(), place_of(&spec.design.spring));
+        diagnostics.push(
+            Diagnostic::error("E0808", at, "more turns in the bore than off the hub")
+                .label("these turns")
+                .help("`free_turns` counts all turns off the hub, those in the bore too: at least `bore_turns`"),
         );
     }
     let index = 1.0 + inner_m / wire_m;

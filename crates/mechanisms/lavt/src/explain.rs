@@ -125,6 +125,11 @@ pub(crate) const CODES: &[Explanation] = &[
         "A lever and a table of levers exclude each other; the first column of a table must rise; a voltage must end above zero.",
     ),
     code(
+        "E0808",
+        "More turns in the bore than off the hub",
+        "`free_turns` counts all turns off the hub, which open together until the bore is reached; those in the bore are among them.",
+    ),
+    code(
         "W0801",
         "The corrected model does not confirm it",
         "The project uses the paper's model. The corrected one - finite turns on the hub, a bore that only what exceeds τ_t presses on - finds that the design slips. Use `model.source = \"corrected\"` for a design.",

@@ -120,7 +120,7 @@ pub(crate) fn measure(m: &mut Measured, design: &Design, train: &Train) {
     let spring = &built.spring;
     let ring_m = 2.0 * (set.planet_ring.wheel.root_radius_m + design.making.ring_wall_m);
     let outer_m = ring_m.max(built.bore_m + 2.0 * design.making.ring_wall_m);
-    let turns = spring.hub_turns + spring.free_turns + spring.bore_turns + spring.unsupported_turns;
+    let turns = spring.hub_turns + spring.free_turns + spring.unsupported_turns;
     // A coil more for the ends; turns lie beside each other, with a tenth of the wire between them.
     let length_m = built.gears.face_m + (turns + 1.0) * 1.1 * spring.wire_m;
     m.set("outer_diameter", outer_m);

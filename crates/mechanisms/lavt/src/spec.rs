@@ -403,8 +403,11 @@ impl Describe for Spring {
         v.quantity(&length("inner_diameter", "Inner diameter, free.").within(5e-4, 1.0).required(), &mut self.inner_diameter);
         let turns = |key, doc| Param::new(key, doc).above(0.0, MOST_TURNS).required();
         v.quantity(&turns("hub_turns", "Turns on the hub, N_A."), &mut self.hub_turns);
-        v.quantity(&turns("free_turns", "Turns between hub and bore, N_F."), &mut self.free_turns);
-        v.quantity(&turns("bore_turns", "Turns in the bore, N_B."), &mut self.bore_turns);
+        v.quantity(
+            &turns("free_turns", "Turns off the hub, which open before the bore is reached: those in the bore and those before it, N_f."),
+            &mut self.free_turns,
+        );
+        v.quantity(&turns("bore_turns", "Turns of these in the bore, N_B."), &mut self.bore_turns);
         let doc = "Turns between the bore and the end at the ring that nothing supports: they carry the whole torque of the clutch.";
         v.quantity(&Param::new("unsupported_turns", doc).within(0.0, MOST_TURNS).default("0"), &mut self.unsupported_turns);
         v.choice(&Param::new("hand", "Hand of the spring.").default("right"), HANDS, &mut self.hand);

@@ -3,9 +3,7 @@
 //! With k = (1 − R)/R the torque on the spring is k `τ_in`: that of the ring on its planets. Mode I ends at `τ_t`; then the bore holds the
 //! ring, and the carrier turns once the hub slips, `τ_in/R` = `τ_out` + `τ_b`. Losses count at the output. Theory: `docs/theory/lavt.md`.
 
-use std::f64::consts::TAU;
-
-use forcewright_elements::wrap_spring::{Dimensions, Model, Options, WrapSpring, WrapSpringError, grip_nm, locking_slip_nm};
+use forcewright_elements::wrap_spring::{Dimensions, Limits, Model, Options, WrapSpring, WrapSpringError};
 
 use crate::design::{Built, Source};
 
@@ -82,23 +80,17 @@ pub fn clutch(built: &Built, source: Source) -> Result<WrapSpring, WrapSpringErr
 
 impl Statics {
     /// The torques of a transmission with these coefficients of friction on hub and bore.
-    pub fn new(built: &Built, clutch: &WrapSpring, [hub, bore]: [f64; 2], mesh_loss: f64) -> Self {
-        let hub_nm = clutch.hub_slip_nm(hub);
-        let transition_nm = clutch.transition_nm();
-        let exponent = TAU * built.spring.bore_turns * bore;
-        let grip_nm = match clutch.options().model {
-            Model::Corrected => (hub_nm > transition_nm).then(|| grip_nm(transition_nm, hub_nm, exponent)),
-            // The paper's optimum has both torques equal, up to rounding.
-            Model::Paper => (hub_nm >= transition_nm * (1.0 - 1e-12)).then(|| locking_slip_nm(hub_nm, exponent)),
-        };
-        let lock_nm = clutch.limits(hub).map_or(0.0, |l| l.lock_nm);
+    pub fn new(built: &Built, clutch: &WrapSpring, friction: [f64; 2], mesh_loss: f64) -> Self {
+        // Coefficients below zero hold nothing.
+        let none = Limits { transition_nm: clutch.transition_nm(), hub_slip_nm: 0.0, lock_nm: 0.0, grip_nm: None };
+        let limits = clutch.limits_on(friction).unwrap_or(none);
         let [one, two] = built.losses;
         Self {
             ratio: built.ratio(),
-            transition_nm,
-            hub_nm,
-            grip_nm,
-            lock_nm,
+            transition_nm: limits.transition_nm,
+            hub_nm: limits.hub_slip_nm,
+            grip_nm: limits.grip_nm,
+            lock_nm: limits.lock_nm,
             proportional: [one.proportional.unwrap_or(0.0), two.proportional.unwrap_or(mesh_loss)],
             constant_nm: [one.constant_nm, two.constant_nm],
         }

@@ -5,6 +5,9 @@ use forcewright_base::roots;
 
 use super::{Model, WrapSpring, WrapSpringError, finite, grip_nm, locking_slip_nm, not_negative, opening_slip_nm};
 
+/// Torques that differ by less, relative to them, are equal.
+const ROUNDING: f64 = 1e-12;
+
 /// What a wrap spring does under a torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
@@ -79,18 +82,29 @@ impl WrapSpring {
     /// # Errors
     /// [`WrapSpringError::Value`]
     pub fn limits(&self, friction: f64) -> Result<Limits, WrapSpringError> {
-        not_negative("friction", friction)?;
+        self.limits_on([friction; 2])
+    }
+
+    /// The same with a coefficient of friction on the hub and one in the bore.
+    ///
+    /// # Errors
+    /// [`WrapSpringError::Value`]
+    pub fn limits_on(&self, [hub_friction, bore_friction]: [f64; 2]) -> Result<Limits, WrapSpringError> {
+        not_negative("friction", hub_friction)?;
+        not_negative("friction", bore_friction)?;
         let transition_nm = self.transition_nm;
-        let lock_nm = locking_slip_nm(self.hub_moment_nm, self.hub_exponent * friction);
-        let bore = self.bore_exponent * friction;
+        let hub = self.hub_exponent * hub_friction;
+        let bore = self.bore_exponent * bore_friction;
+        let lock_nm = locking_slip_nm(self.hub_moment_nm, hub);
         let (hub_slip_nm, grip_nm) = match self.options.model {
             Model::Corrected => {
-                let slip_nm = opening_slip_nm(self.hub_moment_nm, self.hub_exponent * friction);
+                let slip_nm = opening_slip_nm(self.hub_moment_nm, hub);
                 (slip_nm, (slip_nm > transition_nm).then(|| grip_nm(transition_nm, slip_nm, bore)))
             }
             Model::Paper => {
                 let slip_nm = self.hub_moment_nm;
-                (slip_nm, (slip_nm >= transition_nm).then(|| locking_slip_nm(slip_nm, bore)))
+                // The paper's optimum has both equal, up to rounding.
+                (slip_nm, (slip_nm >= transition_nm * (1.0 - ROUNDING)).then(|| locking_slip_nm(slip_nm, bore)))
             }
         };
         Ok(Limits { transition_nm, hub_slip_nm, lock_nm, grip_nm })
@@ -118,7 +132,7 @@ impl WrapSpring {
             }
             Model::Paper => {
                 let ratio = self.hub_moment_nm / self.transition_nm;
-                (ratio >= 1.0 && self.bore_exponent > 0.0).then(|| ln_1p(ratio) / self.bore_exponent)
+                (ratio >= 1.0 - ROUNDING && self.bore_exponent > 0.0).then(|| ln_1p(ratio) / self.bore_exponent)
             }
         }
     }
