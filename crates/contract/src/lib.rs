@@ -9,6 +9,7 @@ pub mod data;
 pub mod describe;
 pub mod edit;
 pub mod family;
+pub mod gears;
 pub mod header;
 pub mod judge;
 pub mod measuring;

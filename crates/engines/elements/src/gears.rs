@@ -14,6 +14,7 @@ mod fillet;
 pub mod interference;
 mod mesh;
 pub mod planetary;
+mod profile;
 mod rack;
 pub mod strength;
 
@@ -21,9 +22,12 @@ mod wheel;
 
 use std::fmt;
 
+use forcewright_curves::fit::FitError;
+
 use crate::hertz::HertzError;
 
 pub use mesh::{Mesh, Path, inverse_involute};
+pub use profile::{GearOutline, Piece, Region, ReliefShape, TipRelief, ToothProfile};
 pub use rack::Rack;
 pub use wheel::{Kind, Wheel, WheelSpec};
 
@@ -54,6 +58,32 @@ pub enum GearError {
         /// Limit `a cos α'` that it must exceed, m.
         least_m: f64,
     },
+    /// The spaces of a ring come to a point before they reach the root circle.
+    PointedSpace {
+        /// Radius at which the flanks meet, m.
+        radius_m: f64,
+    },
+    /// The teeth of a ring reach into the base circle, where there is no involute.
+    TipBelowBase {
+        /// Tip radius, m.
+        tip_radius_m: f64,
+        /// Base radius, m.
+        base_radius_m: f64,
+    },
+    /// Nothing of the flank is left between the fillet and the tip circle.
+    NoFlank {
+        /// Radius at which the flank would begin, m.
+        form_radius_m: f64,
+        /// Tip radius, m.
+        tip_radius_m: f64,
+    },
+    /// Undercut from both sides goes through the tooth.
+    CutOff {
+        /// Radius at which nothing is left of the tooth, m.
+        radius_m: f64,
+    },
+    /// An outline cannot be drawn as asked.
+    Outline(FitError),
     /// The flanks have no Hertzian contact.
     Contact(HertzError),
 }
@@ -72,6 +102,22 @@ impl fmt::Display for GearError {
             Self::CentreDistance { centre_distance_m, least_m } => {
                 write!(f, "there is no mesh at a centre distance of {centre_distance_m} m; it must be above {least_m} m")
             }
+            Self::PointedSpace { radius_m } => {
+                write!(f, "the spaces of the ring come to a point at a radius of {radius_m} m, below their root; shift the profile less")
+            }
+            Self::TipBelowBase { tip_radius_m, base_radius_m } => {
+                write!(
+                    f,
+                    "the tip radius of the ring, {tip_radius_m} m, is not above its base radius of {base_radius_m} m; shorten the teeth or shift the profile outwards"
+                )
+            }
+            Self::NoFlank { form_radius_m, tip_radius_m } => {
+                write!(f, "a flank that begins at a radius of {form_radius_m} m does not reach the tip at {tip_radius_m} m")
+            }
+            Self::CutOff { radius_m } => {
+                write!(f, "undercut leaves nothing of the tooth at a radius of {radius_m} m; shift the profile outwards or take more teeth")
+            }
+            Self::Outline(error) => write!(f, "the outline cannot be drawn: {error}"),
             Self::Contact(error) => error.fmt(f),
         }
     }

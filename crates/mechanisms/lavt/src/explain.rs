@@ -129,6 +129,12 @@ pub(crate) const CODES: &[Explanation] = &[
         "More turns in the bore than off the hub",
         "`free_turns` counts all turns off the hub, which open together until the bore is reached; those in the bore are among them.",
     ),
+    code("LAVT020", "Wall between bore and teeth", "Material between the hole of a gear and the roots of its teeth; a module is kept."),
+    code(
+        "E0820",
+        "Part that cannot be made",
+        "A gear whose teeth cannot be drawn - pointed, without flank, below the base circle - or a bore that leaves no wall.",
+    ),
     code(
         "W0801",
         "The corrected model does not confirm it",

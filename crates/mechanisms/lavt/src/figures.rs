@@ -8,6 +8,7 @@ use forcewright_model::{Axis, Branch, Curve, Figure, FigureContent, HorizontalLi
 use crate::analysis::Behaviour;
 use crate::design::{Design, Source};
 use crate::metrics::Measured;
+use crate::scene;
 use crate::statics::{State, Statics, clutch};
 
 /// Points of a characteristic.
@@ -130,8 +131,18 @@ fn figure(id: &'static str, title: &str, caption: String, content: FigureContent
 
 /// Every figure of a report.
 pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Figure> {
-    let mut all = vec![characteristic_figure(design, behaviour, measured), efficiency_figure(design, behaviour)];
+    let mut all = Vec::new();
+    if let Some(film) = scene::gears(design, behaviour) {
+        let caption = "Seen along the axis, over the turn of the input. The teeth are those that are made.";
+        all.push(figure("mechanism", "Gears in both modes", caption.to_owned(), FigureContent::Film(film)));
+    }
+    all.push(characteristic_figure(design, behaviour, measured));
+    all.push(efficiency_figure(design, behaviour));
     all.extend(margins_figure(design, behaviour));
+    let caption = "The turns off the hub open with the torque; those on the hub do not. To scale.";
+    all.push(figure("spring", "Spring between hub and bore", caption.to_owned(), FigureContent::Film(scene::spring(design, behaviour))));
+    let section = scene::section(design, behaviour);
+    all.push(figure("section", "Section along the axis", section.description.clone(), FigureContent::Scene(section)));
     all
 }
 

@@ -11,6 +11,8 @@ mod explain;
 mod figures;
 mod gears;
 mod metrics;
+mod parts;
+mod scene;
 mod spec;
 mod statements;
 mod statics;
@@ -80,8 +82,7 @@ impl Mechanism for Lavt {
     }
 
     fn parts(design: &Design) -> Result<PartSet, NoPart> {
-        let _ = design;
-        Err(NoPart { code: "E0820", message: String::new(), help: String::new() })
+        parts::parts(design)
     }
 
     fn studies(spec: &Spec) -> &Studies {
