@@ -16,8 +16,8 @@ mod mesh;
 pub mod planetary;
 mod profile;
 mod rack;
+pub mod shift;
 pub mod strength;
-
 mod wheel;
 
 use std::fmt;
@@ -26,7 +26,7 @@ use forcewright_curves::fit::FitError;
 
 use crate::hertz::HertzError;
 
-pub use mesh::{Mesh, Path, inverse_involute};
+pub use mesh::{Backlash, Mesh, Path, Span, inverse_involute};
 pub use profile::{GearOutline, Piece, Region, ReliefShape, TipRelief, ToothProfile};
 pub use rack::Rack;
 pub use wheel::{Kind, Wheel, WheelSpec};

@@ -7,6 +7,7 @@ use forcewright_model::{Check, Sense};
 
 use crate::analysis::{Behaviour, PERMISSIBLE};
 use crate::design::{Design, DisplayUnits, Requirements, Source};
+use crate::gears::Train;
 use crate::metrics::{METRICS, Measured};
 
 /// Least contact ratio: below it teeth let go before the next ones meet, with some room for errors of making.
@@ -47,7 +48,9 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.extend(context.opens());
     all.push(context.wire());
     all.push(context.supported());
+    all.extend(context.returns());
     all.push(context.planets());
+    all.push(context.backlash());
     all.push(context.undercut());
     all.push(context.interference());
     all.extend(["sun", "ring"].map(|with| context.contact(with)));
@@ -333,6 +336,29 @@ impl Context<'_> {
         .judge()
     }
 
+    /// LAVT018: mode I comes back by itself.
+    fn returns(&self) -> Option<Check> {
+        self.behaviour.statics.grip_nm?;
+        let base = self.base("LAVT018", "returns", "Shifts back when the load is gone", "downshift_torque_output");
+        let statics = &self.behaviour.statics;
+        let fix = format!(
+            "`τ_b` of at most {}: a smaller hub or a wider bore; else the hand must be driven open to be fast again",
+            self.torque(statics.transition_nm / (1.0 - statics.ratio))
+        );
+        let basis = "τ_t/(1 − R) − τ_b, less losses: below it the bore lets go";
+        let scale = Some(statics.transition_output_nm());
+        Some(Comparison { required: false, limit: Some(0.0), scale, fix, basis: basis.to_owned(), ..base }.judge())
+    }
+
+    /// LAVT019: both meshes have play.
+    fn backlash(&self) -> Check {
+        let base = self.base("LAVT019", "backlash", "Teeth go in", "backlash_min");
+        let basis = "backlash of both meshes at the distance of sun and planets without play; a thousandth of a module is rounding";
+        let module_m = self.design.built.gears.module_m;
+        let fix = "`x_ring = x_sun + 2 x_planet` is near it for ring = sun + 2 planet; or `design.gears.backlash`".to_owned();
+        Comparison { limit: Some(-1e-3 * module_m), scale: Some(module_m), fix, basis: basis.to_owned(), ..base }.judge()
+    }
+
     /// LAVT012: planets keep clear of each other.
     fn planets(&self) -> Check {
         let base = self.base("LAVT012", "planet_gap", "Planets keep clear of each other", "planet_gap");
@@ -342,26 +368,25 @@ impl Context<'_> {
         Comparison { limit: Some(limit), fix, basis: basis.to_owned(), ..base }.judge()
     }
 
+    /// What shifts would mend it; only sought where something is wrong.
+    fn shifted(&self, margin: Option<f64>) -> String {
+        if margin.is_some_and(|m| m >= 0.0) { String::new() } else { Train::advice(&self.design.built.gears) }
+    }
+
     /// LAVT013: no undercut.
     fn undercut(&self) -> Check {
         let base = self.base("LAVT013", "undercut", "Teeth are not undercut", "undercut_margin");
         let basis = "profile shift less h − (z/2) sin² α, the least that avoids undercut by the rack";
-        Comparison {
-            required: false,
-            limit: Some(0.0),
-            scale: Some(1.0),
-            fix: self.behaviour.train.advice(),
-            basis: basis.to_owned(),
-            ..base
-        }
-        .judge()
+        Comparison { required: false, limit: Some(0.0), scale: Some(1.0), fix: self.shifted(base.value), basis: basis.to_owned(), ..base }
+            .judge()
     }
 
     /// LAVT014: no interference.
     fn interference(&self) -> Check {
         let base = self.base("LAVT014", "interference", "Teeth do not interfere", "interference_margin");
         let basis = format!("least of involute, trochoid and trimming interference: {}", self.behaviour.train.tightest());
-        Comparison { required: false, limit: Some(0.0), scale: Some(1.0), fix: self.behaviour.train.advice(), basis, ..base }.judge()
+        let scale = Some(self.design.built.gears.module_m);
+        Comparison { limit: Some(0.0), scale, fix: self.shifted(base.value), basis, ..base }.judge()
     }
 
     /// LAVT015: contact ratio.

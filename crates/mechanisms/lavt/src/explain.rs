@@ -129,6 +129,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "More turns in the bore than off the hub",
         "`free_turns` counts all turns off the hub, which open together until the bore is reached; those in the bore are among them.",
     ),
+    code(
+        "LAVT018",
+        "Shifts back when the load is gone",
+        "In mode II the bore lets go when the output falls below τ_t/(1 − R) − τ_b. If that is below zero, a hand that has grasped stays slow even without load, until it is driven open. A hub that is much tighter than the bore is wide grips well and does this; it is a choice, so the check is advice.",
+    ),
+    code(
+        "LAVT019",
+        "Teeth go in",
+        "Backlash of both meshes at the distance at which sun and planets, with full teeth, have no play. Profile shifts must bring both meshes to one distance: for ring = sun + 2 planet, x_ring = x_sun + 2 x_planet is near it.",
+    ),
     code("LAVT020", "Wall between bore and teeth", "Material between the hole of a gear and the roots of its teeth; a module is kept."),
     code(
         "E0820",

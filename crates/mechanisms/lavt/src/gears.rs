@@ -1,8 +1,12 @@
 //! The planetary gears of a design: whether they run, and what they lose.
 
+use forcewright_base::units::format_number;
 use forcewright_elements::gears::interference::{Condition, Margin, Unit, least_shift, mesh_margins};
-use forcewright_elements::gears::planetary::PlanetarySet;
-use forcewright_elements::gears::{Kind, Wheel, WheelSpec};
+use forcewright_elements::gears::planetary::{PlanetarySet, Teeth};
+use forcewright_elements::gears::shift::ShiftWanted;
+use forcewright_elements::gears::strength::{SetLoad, set_stresses};
+use forcewright_elements::gears::{Kind, Mesh, Wheel, WheelSpec};
+use forcewright_elements::hertz::Solid;
 
 use crate::design::{Design, Gears};
 use crate::metrics::Measured;
@@ -76,9 +80,37 @@ impl Train {
         self.loss
     }
 
-    /// What would mend undercut and interference.
-    pub(crate) fn advice(&self) -> String {
-        "shift the profiles: `design.gears.profile_shift` and `tip_shortening`; `forcewright synthesise` finds them".to_owned()
+    /// What would mend undercut and interference: the shifts that a search finds.
+    pub(crate) fn advice(gears: &Gears) -> String {
+        let [sun, planet, ring] = gears.teeth;
+        let usual = ShiftWanted::usual(Teeth { sun, planet, ring }, gears.planets, gears.module_m, gears.backlash_m);
+        let wanted = ShiftWanted { rack: gears.rack, least_clearance: gears.rack.clearance(), ..usual };
+        match wanted.solve_reachable() {
+            Ok(found) => {
+                let specs = [found.set.sun_planet.pinion.spec, found.set.planet_ring.pinion.spec, found.set.planet_ring.wheel.spec];
+                let list = |of: &dyn Fn(&WheelSpec) -> f64| {
+                    let all = ["sun", "planet", "ring"].iter().zip(&specs);
+                    all.map(|(name, spec)| format!("{name} = {}", format_number(of(spec), 4))).collect::<Vec<_>>().join(", ")
+                };
+                format!(
+                    "`profile_shift = {{ {} }}` with `tip_shortening = {{ {} }}` runs",
+                    list(&|s| s.profile_shift),
+                    list(&|s| s.tip_shortening)
+                )
+            }
+            Err(error) => format!("no profile shift was found that runs: {error}; take other numbers of teeth"),
+        }
+    }
+
+    /// Stresses with a torque at the sun, Pa: the largest at a root, and between flanks.
+    fn stresses_pa(&self, design: &Design, sun_nm: f64) -> Option<[f64; 2]> {
+        let material = design.gear_material.as_ref()?;
+        let solid = Solid { young_modulus_pa: material.young_pa, poisson_ratio: material.poisson };
+        let gears = &design.built.gears;
+        let load = SetLoad { sun_torque_nm: sun_nm, sharing: gears.sharing, face_width_m: gears.face_m, solids: [solid; 3] };
+        let found = set_stresses(&self.set, &load).ok()?;
+        let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
+        Some([largest(&found.bending_pa), largest(&found.flanks.map(|f| f.largest_pa))])
     }
 
     /// The least room in words.
@@ -115,6 +147,12 @@ pub(crate) fn measure(m: &mut Measured, design: &Design, train: &Train) {
     }
     m.set("undercut_margin", train.undercut);
     m.set("interference_margin", train.tightest.room_m);
+    let backlash = |mesh: &Mesh| mesh.backlash().circumferential_m;
+    m.set("backlash_min", backlash(&set.sun_planet).min(backlash(&set.planet_ring)));
+    if let Some([bending_pa, flank_pa]) = design.requirements.as_ref().and_then(|r| train.stresses_pa(design, r.input_nm)) {
+        m.set("tooth_bending_stress", bending_pa);
+        m.set("flank_pressure", flank_pa);
+    }
     m.set("mesh_efficiency", train.friction.map(|_| 1.0 - train.loss));
     let built = &design.built;
     let spring = &built.spring;

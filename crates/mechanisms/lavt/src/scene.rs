@@ -104,10 +104,10 @@ impl Train {
             // A tooth of the sun at this place of the carrier needs a space of the planet.
             let sun_phase = place_rad * z_sun / TAU;
             let own_rad = at_rad + PI - (TAU / z_planet) * (0.5 - sun_phase) - rolled_rad * z_sun / z_planet;
-            items.push(Item::Body { corners: turned(&self.planet, own_rad, centre), role: named(Look::Moving, "planets") });
+            items.push(Item::Body { corners: turned(&self.planet, own_rad, centre), role: named(Look::Plate, "planets") });
             pins.push(centre);
         }
-        items.push(Item::Body { corners: turned(&self.sun, sun_rad, [0.0; 2]), role: named(Look::Moving, "sun") });
+        items.push(Item::Body { corners: turned(&self.sun, sun_rad, [0.0; 2]), role: named(Look::Plate, "sun") });
         for pin in &pins {
             items.push(line(vec![[0.0; 2], *pin], 0.5 * self.pin_m, named(Look::Bar, "carrier")));
         }

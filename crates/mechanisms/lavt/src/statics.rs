@@ -116,9 +116,10 @@ impl Statics {
         self.ratio * (output_nm + self.hub_nm + self.constant_nm[1]) / (1.0 - self.proportional[1])
     }
 
-    /// Output torque below which mode II gives way to mode I, N·m; `None` without a mode II.
+    /// Output torque below which mode II gives way to mode I, N·m; below 0 where even an unloaded output stays in mode II; `None` without
+    /// a mode II.
     pub fn downshift_nm(&self) -> Option<f64> {
-        self.grip_nm.map(|_| self.mode_2_nm(self.transition_nm / self.leverage()))
+        self.grip_nm.map(|_| self.freely_nm(self.transition_nm / self.leverage()))
     }
 
     /// Largest input torque that is held, N·m: by the bore, or by the hub where the bore is not reached.
@@ -135,8 +136,13 @@ impl Statics {
         ((1.0 - self.proportional[0]) * input_nm - self.constant_nm[0]).max(0.0)
     }
 
+    /// Eq. (17), below 0 too.
+    fn freely_nm(&self, input_nm: f64) -> f64 {
+        (1.0 - self.proportional[1]) * input_nm / self.ratio - self.hub_nm - self.constant_nm[1]
+    }
+
     fn mode_2_nm(&self, input_nm: f64) -> f64 {
-        ((1.0 - self.proportional[1]) * input_nm / self.ratio - self.hub_nm - self.constant_nm[1]).max(0.0)
+        self.freely_nm(input_nm).max(0.0)
     }
 
     /// State and output torque (N·m) as the input torque grows from zero and the output gives way whenever it can.

@@ -175,7 +175,7 @@ pub fn check_tip(wheel: &Wheel) -> Result<(), GearError> {
 }
 
 /// Margins of one gear, with the least thickness of its tips (m).
-pub fn wheel_margins(wheel: &Wheel, least_tip_m: f64) -> impl Iterator<Item = Margin> {
+pub fn wheel_margins(wheel: &Wheel, least_tip_m: f64) -> impl Iterator<Item = Margin> + use<> {
     let tip = Margin::new(Condition::TipThickness, tip_thickness_m(wheel) - least_tip_m);
     let (first, second) = match wheel.spec.kind {
         Kind::External => {
@@ -193,7 +193,7 @@ pub fn wheel_margins(wheel: &Wheel, least_tip_m: f64) -> impl Iterator<Item = Ma
 }
 
 /// Margins of a mesh, with the least bottom clearance (m).
-pub fn mesh_margins(mesh: &Mesh, least_clearance_m: f64) -> impl Iterator<Item = Margin> {
+pub fn mesh_margins(mesh: &Mesh, least_clearance_m: f64) -> impl Iterator<Item = Margin> + use<> {
     let path = mesh.path();
     let [pinion_m, wheel_m] = mesh.bottom_clearances_m();
     let external = mesh.wheel.spec.kind == Kind::External;

@@ -258,6 +258,13 @@ impl Mesh {
         [radius_m(&self.pinion, pinion_m), radius_m(&self.wheel, wheel_m)]
     }
 
+    /// Radii on pinion and wheel between which their flanks touch, m: each from the start of the path to its end.
+    pub fn active_radii_m(&self) -> [[f64; 2]; 2] {
+        let usable = self.path().usable;
+        let (start, end) = (self.radii_m(usable.start_m), self.radii_m(usable.end_m));
+        [[start[0], end[0]], [start[1], end[1]]]
+    }
+
     /// Roll angles `ρ / r_b` of both flanks at a point of the line of action (`ξ`, m), rad.
     pub fn roll_angles_rad(&self, xi_m: f64) -> [f64; 2] {
         let [pinion_m, wheel_m] = self.curvature_radii_m(xi_m);
@@ -282,7 +289,8 @@ impl Mesh {
     /// Loss of power over power, per unit of friction coefficient: `H_V = (1 ± 1/u) ⟨|ξ − ξ_C|⟩ / r_b1`, below for a ring.
     ///
     /// Coulomb friction of one coefficient, the load shared equally by the pairs in contact. For a contact ratio of 1 to 2 with the pitch
-    /// point on the path it is `π (u ± 1)/(z₁ u) (1 − ε + ε₁² + ε₂²)`. Niemann and Winter, "Maschinenelemente II"; ISO/TR 14179-2.
+    /// point on the path it is `π (u ± 1)/(z₁ u) (1 − ε + ε₁² + ε₂²)`. Niemann and Winter,
+    /// "Maschinenelemente", volume 2; ISO/TR 14179-2.
     pub fn loss_factor(&self) -> f64 {
         (1.0 + self.sign() / self.ratio()) * self.path().mean_sliding_arm_m() / self.pinion.base_radius_m
     }

@@ -298,11 +298,11 @@ impl Train {
         // The one in which the held shaft stands.
         let mut speeds = [0, 1, 2].map(|k| block[k] * rolling[held] - rolling[k] * block[held]);
         let driven = speeds[input];
-        speeds.iter_mut().for_each(|speed| *speed /= driven);
+        speeds = speeds.map(|speed| speed / driven);
         let mut torques = [true, false].map(|sun_to_ring| self.torques(sun_to_ring));
         for row in &mut torques {
             let driven = row[input];
-            row.iter_mut().for_each(|torque| *torque /= driven);
+            *row = row.map(|torque| torque / driven);
         }
         // The right one has the flow of rolling power that it assumes: torque of the sun times its speed against the carrier.
         let from_sun = |row: &[f64; 3]| row[0] * (speeds[0] - speeds[1]) >= 0.0;
@@ -329,7 +329,9 @@ impl Train {
     }
 
     /// Output torque at the carrier (N m) and efficiency with the ring held by the housing, the sun driven by a torque (N m, above 0), while a
-    /// clutch between ring and carrier drags (N m, at least 0): mode II of Butin et al. (2023), `τ_out = τ_in/R − τ_b`, with losses of the teeth.
+    /// clutch between ring and carrier drags (N m, at least 0).
+    ///
+    /// Mode II of Butin et al. (2023), `τ_out = τ_in/R − τ_b`, with losses of the teeth.
     ///
     /// # Errors
     /// [`GearError::Value`]

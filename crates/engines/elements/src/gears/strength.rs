@@ -28,7 +28,8 @@ pub struct ToothRoot {
 }
 
 /// Weakest section of a tooth: where the parabola of a beam of uniform strength, with its vertex where the load at the tip meets the middle of
-/// the tooth, touches the fillet. W. Lewis, "Investigation of the strength of gear teeth", Proc. Engineers' Club of Philadelphia 1892.
+/// the tooth, touches the fillet. W. Lewis, "Investigation of the strength of gear teeth", Proceedings of the
+/// Engineers' Club of Philadelphia 10, 1893 (`lewis1893`).
 ///
 /// # Errors
 /// [`GearError::Value`] of a gear whose teeth have no such section.

@@ -121,7 +121,6 @@ impl Motor {
 type Pairs = Slot<Vec<Located<[Quantity; 2]>>>;
 
 /// E0807: the points of a table, whose first column ascends.
-#[expect(clippy::ref_option, reason = "a slot as it stands in the description")]
 fn points(slot: &Pairs, what: &str, diagnostics: &mut Diagnostics) -> Option<Vec<[f64; 2]>> {
     let typed = slot.as_ref()?;
     let points: Vec<[f64; 2]> = typed.value.iter().map(|p| [p.value[0].si, p.value[1].si]).collect();
@@ -173,9 +172,9 @@ pub(super) fn motor_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Mot
     let ramp_s = si(&typed.ramp).unwrap_or(0.0);
     let profile = points(&typed.supply_profile, "the time", diagnostics);
     let supply = profile.unwrap_or_else(|| if ramp_s > 0.0 { vec![[0.0, 0.0], [ramp_s, supply_v]] } else { vec![[0.0, supply_v]] });
-    if let Some(last) = supply.last().filter(|p| p[1] <= 0.0) {
+    if let Some([_, last_v]) = supply.last().filter(|[_, volts]| *volts <= 0.0) {
         let at = typed.supply_profile.as_ref().map_or_else(|| place_of(&spec.motor), |l| l.span);
-        let error = Diagnostic::error("E0807", at, format!("the voltage ends at {} V", last[1])).label("this profile");
+        let error = Diagnostic::error("E0807", at, format!("the voltage ends at {last_v} V")).label("this profile");
         diagnostics.push(error.help("let it end above zero: the grasp is held with it"));
     }
     Some(Motor {
