@@ -84,6 +84,17 @@ const GENERATED: &[Generated] = &[
         source: Source::Printed(&["reproduce", "longval", "--format", "markdown"]),
         region: Region::Between("validation"),
     },
+    Generated { file: "docs/reference/lavt.schema.json", source: Source::Printed(&["schema", "lavt"]), region: Region::Whole },
+    Generated {
+        file: "docs/reference/lavt-parameters.md",
+        source: Source::Printed(&["schema", "lavt", "--format", "markdown"]),
+        region: Region::Remarked,
+    },
+    Generated {
+        file: "crates/mechanisms/lavt/README.md",
+        source: Source::Printed(&["reproduce", "butin2023", "--format", "markdown"]),
+        region: Region::Between("validation"),
+    },
     Generated {
         file: "docs/images/longval.svg",
         source: Source::Written(&["solve", "examples/capstan/longval.toml"], "mechanism.svg"),

@@ -86,14 +86,15 @@ fn samples(workspace: &Workspace, steps: &mut Steps) -> Option<(PathBuf, PathBuf
     folders
 }
 
-/// Projects whose parts are read in a CAD kernel: outlines of beams and of cams, grooved drums.
-const PROJECTS: [&str; 6] = [
+/// Projects whose parts are read in a CAD kernel: outlines of beams and of cams, grooved drums, gears.
+const PROJECTS: [&str; 7] = [
     "examples/compliant/lan-table3.toml",
     "examples/compliant/lan-end-effector.toml",
     "examples/cam/no-undercut.toml",
     "examples/cam/push-springs.toml",
     "examples/cam/torque-cam.toml",
     "examples/capstan/longval.toml",
+    "examples/lavt/butin-2.toml",
 ];
 
 const EXAMPLE: [&str; 6] = ["run", "--package", "forcewright-fabricate", "--example", "samples", "--"];

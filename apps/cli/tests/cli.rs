@@ -257,6 +257,7 @@ fn a_reader_that_goes_away_is_no_panic() {
         &["solve", "a.toml", "--json"],
         &["schema", "cam"],
         &["schema", "capstan"],
+        &["schema", "lavt"],
         &["--help"],
         &["check", "a.toml"],
     ] {

@@ -149,6 +149,10 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0706", "a warning of the analysis"),
     ("E0730", "a drum that cannot be turned: tests of the family"),
     ("E0731", "grooves on one stretch of a drum: tests of the family"),
+    ("W0801", "the paper's model: a warning of the analysis"),
+    ("W0802", "an analysis that depends on friction: a warning of the analysis"),
+    ("W0803", "friction without a range: a warning of the analysis"),
+    ("E0820", "a gear that cannot be drawn: tests of the family"),
 ];
 
 /// Edits of the cam example and the code that each must bring.
@@ -179,6 +183,21 @@ const CAPSTAN_EDITS: &[(&str, &str, &str)] = &[
     ("E0704", "lines = [0, 4]", "lines = [0, 5]"),
     ("E0706", "[inertia]", "[environment]\ntemperature_change = \"20 K\"\n[inertia]"),
 ];
+
+/// Edits of the two-speed transmission and the code that each must bring.
+const LAVT_EDITS: &[(&str, &str, &str)] = &[
+    ("E0801", "ring = 48", "ring = 60"),
+    ("E0802", "planets = 3", "planets = 7"),
+    ("E0803", "diameter = \"17.6 mm h7\"", "diameter = \"16 mm h7\""),
+    ("E0804", "diameter = \"19.4 mm H7\"", "diameter = \"18 mm H7\""),
+    ("E0805", "wire_diameter = \"1 mm ± 0.01 mm\"", "wire_diameter = \"6 mm\""),
+    ("E0806", "EN 10270-1 SH", "hair of a horse"),
+    ("E0807", "lever = \"130 mm\"", ""),
+    ("E0808", "bore_turns = 3", "bore_turns = 9"),
+];
+
+/// The two-speed transmission.
+const LAVT: &str = include_str!("../../../examples/lavt/butin-2.toml");
 
 /// The cable drive.
 const CAPSTAN: &str = include_str!("../../../examples/capstan/longval.toml");
@@ -221,7 +240,8 @@ fn every_code_is_met_and_every_code_met_is_explained() {
         met.extend(found);
     }
     let cams = CAM_EDITS.iter().map(|edit| (CAM, edit)).chain(TORQUE_EDITS.iter().map(|edit| (TORQUE_CAM, edit)));
-    for (example, (code, from, to)) in cams.chain(CAPSTAN_EDITS.iter().map(|edit| (CAPSTAN, edit))) {
+    let drives = CAPSTAN_EDITS.iter().map(|edit| (CAPSTAN, edit)).chain(LAVT_EDITS.iter().map(|edit| (LAVT, edit)));
+    for (example, (code, from, to)) in cams.chain(drives) {
         assert!(example.contains(from), "{from} is not in the example");
         let found = codes_of(&example.replacen(from, to, 1), &Choices::default());
         if !found.contains(code) {

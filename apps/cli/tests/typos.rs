@@ -49,10 +49,11 @@ fn misspell(word: &str, kind: usize, noise: &mut Noise) -> String {
 const KINDS: usize = 9;
 
 /// A whole project of every family.
-const PROJECTS: [(&str, &str); 3] = [
+const PROJECTS: [(&str, &str); 4] = [
     ("compliant", common::EXAMPLE),
     ("cam", include_str!("../../../examples/cam/sanchez-2-springs.toml")),
     ("capstan", include_str!("../../../examples/capstan/longval.toml")),
+    ("lavt", include_str!("../../../examples/lavt/butin-2.toml")),
 ];
 
 fn families() -> impl Iterator<Item = (&'static dyn Family, &'static str)> {

@@ -1,4 +1,5 @@
-//! Machine elements: the material catalogue, line contact, springs, wrap springs, cables, grooves and wrap friction. Theory: `docs/theory/elements.md`.
+//! Machine elements: the material catalogue, line contact, springs, wrap springs, gears, cables, grooves and wrap friction. Theory:
+//! `docs/theory/elements.md`.
 
 pub mod cables;
 pub mod gears;

@@ -213,17 +213,19 @@ pub(crate) fn section(design: &Design, behaviour: &Behaviour) -> Scene {
     let bore_outer_m = (0.5 * built.bore_m + making.ring_wall_m).max(outer_m);
     let mut items = vec![
         block([0.0, face_m], [ring.tip_radius_m, outer_m], named(Look::Plate, "ring")),
-        block([face_m, face_m + 0.5 * plate_m], [0.5 * built.bore_m - 2.0 * wire_m, outer_m], named(Look::Plate, "ring")),
-        block([0.0, face_m], [arm_m - planet.tip_radius_m, arm_m + planet.tip_radius_m], named(Look::Moving, "planet")),
-        block([-plate_m, face_m], [0.0, sun.tip_radius_m.min(arm_m - planet.root_radius_m)], named(Look::Moving, "sun and input")),
+        // Its rim reaches over the carrier to the seat of the spring's end.
+        block([face_m, face_m + 0.55 * plate_m], [ring.root_radius_m, outer_m], named(Look::Plate, "ring")),
+        block([face_m + 0.55 * plate_m, face_m + plate_m], [0.5 * built.bore_m - 2.0 * wire_m, outer_m], named(Look::Plate, "ring")),
+        block([0.0, face_m], [arm_m - planet.tip_radius_m, arm_m + planet.tip_radius_m], named(Look::Moving, "planet and sun")),
+        block([-2.0 * plate_m, face_m], [0.0, sun.tip_radius_m.min(arm_m - planet.root_radius_m)], named(Look::Moving, "planet and sun")),
         block([-0.5 * plate_m, 0.0], [arm_m - 0.5 * planet.root_radius_m, arm_m + 0.5 * planet.root_radius_m], named(Look::Bar, "carrier")),
         block([face_m, face_m + 0.5 * plate_m], [0.0, arm_m + 0.5 * planet.root_radius_m], named(Look::Bar, "carrier")),
         block([face_m + 0.5 * plate_m, hub_x[1]], [0.0, shaft_m], named(Look::Bar, "carrier")),
-        block(hub_x, [shaft_m, 0.5 * built.hub_m], named(Look::Moving, "hub, surface A")),
+        block(hub_x, [shaft_m, 0.5 * built.hub_m], named(Look::Plate, "hub, surface A")),
         block(
             [coil_x(spring.unsupported_turns) - pitch_m, bore_end],
             [0.5 * built.bore_m, bore_outer_m],
-            named(Look::Track, "bore, surface B"),
+            named(Look::Plate, "bore, surface B"),
         ),
         block([-plate_m, hub_x[1] + plate_m], [bore_outer_m + wire_m, bore_outer_m + wire_m + 0.5 * plate_m], named(Look::Rail, "chassis")),
     ];

@@ -39,17 +39,35 @@ impl View {
 }
 
 /// What is drawn of a part, in metres: boundaries, and the ends of the centre line of a turned part.
+#[derive(Default)]
 struct Shown {
     boundaries: Vec<Profile>,
     axis: Option<[[f64; 2]; 2]>,
 }
 
-/// Plates lie where they are, in their common plane; turned parts follow to the right, axes upright.
+/// Plates lie where they are, in their common plane; one that would lie on another follows to the right, and so do turned parts, axes
+/// upright.
 fn shown_parts(set: &PartSet) -> Vec<Shown> {
-    let plates = set.parts.iter().filter_map(Part::plate);
-    let mut bounds = plates.fold(Bounds::of([]), |all, plate| all.union(plate.outline.bounds()));
+    let mut bounds = Bounds::of([]);
+    let mut laid: Vec<Bounds> = Vec::new();
+    let mut plates = Vec::new();
+    for plate in set.parts.iter().filter_map(Part::plate) {
+        let own = plate.outline.bounds();
+        let shift_m = if laid.iter().any(|other| overlap(other, &own)) {
+            let room_m = ROOM * 0.5 * (own.max_m[0] - own.min_m[0]);
+            [bounds.max_m[0] + room_m - own.min_m[0], bounds.min_m[1] - own.min_m[1]]
+        } else {
+            [0.0; 2]
+        };
+        let shown = plate_boundaries(plate, &Motion::new(0.0, shift_m));
+        let moved = shown.boundaries[0].bounds();
+        bounds = bounds.union(moved);
+        laid.push(moved);
+        plates.push(shown);
+    }
+    let mut plates = plates.into_iter();
     let one = |part: &Part| match &part.body {
-        Body::Plate(plate) => plate_boundaries(plate),
+        Body::Plate(_) => plates.next().unwrap_or_default(),
         Body::Turned(turned) => {
             let radius_m = turned.largest_radius_m();
             let left_m = if bounds.max_m[0].is_finite() { bounds.max_m[0] + ROOM * radius_m } else { 0.0 };
@@ -62,9 +80,15 @@ fn shown_parts(set: &PartSet) -> Vec<Shown> {
     set.parts.iter().map(one).collect()
 }
 
-fn plate_boundaries(plate: &Plate) -> Shown {
+fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    (0..2).all(|k| a.min_m[k] < b.max_m[k] && b.min_m[k] < a.max_m[k])
+}
+
+/// The outline first.
+fn plate_boundaries(plate: &Plate, place: &Motion) -> Shown {
     let holes = plate.holes.iter().map(|h| Profile::circle(h.centre_m, 0.5 * h.diameter_m));
-    Shown { boundaries: std::iter::once(plate.outline.clone()).chain(plate.cutouts.iter().cloned()).chain(holes).collect(), axis: None }
+    let all = std::iter::once(plate.outline.clone()).chain(plate.cutouts.iter().cloned()).chain(holes);
+    Shown { boundaries: all.map(|profile| profile.transformed(place)).collect(), axis: None }
 }
 
 /// Both halves of a body cut along its axis, the foot of which is at a point. Nothing of a body that cannot be made.
