@@ -23,7 +23,7 @@ fn design() -> Design {
 
 fn statics(design: &Design) -> Statics {
     let geometry = design.built.geometry().expect("a drive");
-    let place = design.built.place(&geometry, design.built.middle_wraps_rad());
+    let place = design.built.place(&geometry, design.built.middle_rad());
     Statics::new(&design.built, &place, design.source).expect("a drive")
 }
 

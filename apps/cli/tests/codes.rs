@@ -98,6 +98,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0518", "a design that is no part: tests of export"),
     ("E0519", "a fillet and its cutter: tests of export"),
     ("E0326", "a part that cannot be written: none is known"),
+    ("E0327", "turned parts for finite elements: tests of export"),
     ("E0520", "a surface: tests of scenarios"),
     ("E0521", "a surface: tests of scenarios"),
     ("W0515", "a warning of the analysis: tests of layouts"),
@@ -131,6 +132,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0720", "what a synthesis needs: tests of the family"),
     ("E0721", "what a synthesis needs: tests of the family"),
     ("E0722", "what a synthesis needs: tests of the family"),
+    ("E0723", "what a synthesis needs: tests of the family"),
     ("W0601", "a warning of the analysis"),
     ("W0602", "a warning of the analysis"),
     ("W0603", "a warning of the analysis"),
@@ -141,6 +143,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0609", "a warning of the analysis"),
     ("W0610", "a warning of searches: tests of the family"),
     ("E0705", "cables of different preload: tests of the family"),
+    ("E0708", "too many cables: tests of the family"),
     ("W0701", "a warning of the analysis"),
     ("W0702", "a warning of the analysis"),
     ("W0703", "a warning of the analysis"),
@@ -182,6 +185,7 @@ const CAPSTAN_EDITS: &[(&str, &str, &str)] = &[
     ("E0703", "steel 7x19 1.5 mm", "rope of hair 1.5 mm"),
     ("E0704", "lines = [0, 4]", "lines = [0, 5]"),
     ("E0706", "[inertia]", "[environment]\ntemperature_change = \"20 K\"\n[inertia]"),
+    ("E0707", "travel = \"270 deg\"", "travel = \"300 deg\"\ninput_hold = \"fastened\""),
 ];
 
 /// Edits of the two-speed transmission and the code that each must bring.

@@ -63,12 +63,15 @@ pub struct Relaxation {
     pub at_most: bool,
 }
 
+/// Sees what part of the work is done, 0 to 1, from any thread; the work ends soon after it returns `false`, with what was found until then.
+pub type Watch<'a> = &'a (dyn Fn(f64) -> bool + Sync);
+
 /// What a family proposes for a file.
 pub trait Synthesiser: Send + Sync {
     /// How many designs are wanted.
     fn wanted(&self) -> usize;
-    /// Designs by closed forms, the best first. Empty where none keeps to the limits.
-    fn proposals(&self) -> Vec<Proposal>;
+    /// Designs by closed forms, the best first. Empty where none keeps to the limits. Where it is interrupted, what was found until then.
+    fn proposals(&self, watch: Watch<'_>) -> Vec<Proposal>;
     /// A proposal in the light of its full analysis.
     fn judge(&self, proposal: &Proposal, outcome: &Outcome) -> Judgement;
     /// A proposal after a search has gone on from it: its sizes are those of the parameters that its file now has.
@@ -77,15 +80,15 @@ pub trait Synthesiser: Send + Sync {
     fn alike(&self, a: &Proposal, b: &Proposal) -> bool;
     /// For each limit the nearest value at which, all others as they are, something can be proposed; `slack` from 0 on loosens it by so
     /// much more, relative, where the nearest value did not stand the full analysis.
-    fn relaxations(&self, slack: f64) -> Vec<Relaxation>;
+    fn relaxations(&self, slack: f64, watch: Watch<'_>) -> Vec<Relaxation>;
     /// The nearest that can be offered where nothing keeps to the limits: what misses them least.
-    fn nearest(&self) -> Vec<Proposal>;
+    fn nearest(&self, watch: Watch<'_>) -> Vec<Proposal>;
     /// What the closed forms took, in words; empty where there is nothing to tell.
     fn effort(&self) -> Option<String> {
         None
     }
     /// Tables about the best design that meets everything, such as its alternatives.
-    fn tables(&self, _best: &Proposal) -> Vec<StudyTable> {
+    fn tables(&self, _best: &Proposal, _watch: Watch<'_>) -> Vec<StudyTable> {
         Vec::new()
     }
 }

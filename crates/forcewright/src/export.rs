@@ -3,7 +3,7 @@
 mod page;
 
 use forcewright_base::diagnostics::Explanation;
-use forcewright_fabricate::{Format, Options, write};
+use forcewright_fabricate::{Error, Format, Options, Problem, write};
 use forcewright_model::{Body, CheckState, NoPart, Part, PartSet, Plate, Section, Turned};
 use forcewright_report::json;
 use serde_json::{Value, json};
@@ -11,11 +11,30 @@ use serde_json::{Value, json};
 use crate::{Loaded, VERSION};
 
 /// The long stories of this command's codes.
-pub(crate) const CODES: &[Explanation] = &[Explanation {
-    code: "E0326",
-    title: "a part that cannot be written",
-    text: "The outline of a part is checked before anything is written: closed, in its direction, without crossings. This one fails, which a design that has a part should not; please report it with the file.",
-}];
+pub(crate) const CODES: &[Explanation] = &[
+    Explanation {
+        code: "E0326",
+        title: "a part that cannot be written",
+        text: "The outline of a part is checked before anything is written: closed, in its direction, without crossings. This one fails, which a design that has a part should not; please report it with the file.",
+    },
+    Explanation {
+        code: "E0327",
+        title: "no finite-element model of this family",
+        text: "`--format inp` writes plane finite-element models of plates. Parts that are turned, such as the drums of a cable drive, have none: write them as STEP, and let the program of finite elements mesh that solid.",
+    },
+];
+
+/// Why a part has no file of this format.
+fn not_written(part: &Part, format: Format, error: &Error) -> NoPart {
+    if let Problem::OnlyPlates { .. } = error.problem {
+        return NoPart {
+            code: "E0327",
+            message: format!("{} has no finite-element model in this family: {format} is for plates, and it is turned", part.name),
+            help: "`--format step` writes the solid; let the program of finite elements mesh that".to_owned(),
+        };
+    }
+    NoPart { code: "E0326", message: format!("{} as {format}: {error}", part.name), help: "please report this with the file".to_owned() }
+}
 
 /// The parts of a design with their files.
 #[derive(Clone, Debug)]
@@ -46,11 +65,7 @@ impl Loaded {
                     continue;
                 }
                 named.push(*format);
-                let bytes = write(part, *format, options).map_err(|error| NoPart {
-                    code: "E0326",
-                    message: format!("{} as {format}: {error}", part.name),
-                    help: "please report this with the file".to_owned(),
-                })?;
+                let bytes = write(part, *format, options).map_err(|error| not_written(part, *format, &error))?;
                 files.push((format!("{name}.{}", format.extension()), bytes));
             }
         }

@@ -30,6 +30,8 @@ const NEARLY_MET: f64 = 0.1;
 const MOST_SEARCHES: usize = 2;
 /// How often a loosened limit is loosened further where the nearest value does not stand the full analysis, and by how much each time.
 const SLACKS: [f64; 4] = [0.0, 0.03, 0.08, 0.2];
+/// Parts in which a family's own search tells where it stands.
+const PARTS: u32 = 1000;
 /// A margin no larger is that of a limit met exactly.
 const TAKEN_OVER: f64 = 1e-9;
 
@@ -47,12 +49,16 @@ pub struct SynthesisProgress {
 /// What a synthesis is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
+    /// The family looks through what there is; `done` of `of` parts.
+    Sizing,
     /// Designs are analysed and corrected.
     Analysing,
     /// One that nearly meets everything is searched on from.
     Searching,
     /// Limits are loosened one at a time to find out which blocks.
     Loosening,
+    /// The best design is set beside its alternatives.
+    Comparing,
 }
 
 /// A design that was found.
@@ -245,9 +251,16 @@ impl SynthesisTask {
             stopped.fetch_or(!watch(&progress), Ordering::Relaxed);
             !stopped.load(Ordering::Relaxed)
         };
-        let work = Work { task: self, go_on: &go_on, analysed: AtomicUsize::new(0) };
-        let (mut designs, rejected) = work.analysed(&self.synthesiser.proposals());
-        if !designs.iter().any(Designed::met) {
+        let mut work = Work { task: self, go_on: &go_on, analysed: AtomicUsize::new(0) };
+        let mut proposals = self.synthesiser.proposals(&|part| go_on(sizing(Stage::Sizing, part)));
+        if stopped.load(Ordering::Relaxed) {
+            // What the family had found is kept, the best of it, although nothing more is begun.
+            proposals.truncate(self.synthesiser.wanted().min(TOGETHER));
+            work.go_on = &|_| true;
+        }
+        let (mut designs, rejected) = work.analysed(&proposals);
+        work.go_on = &go_on;
+        if !designs.iter().any(Designed::met) && !stopped.load(Ordering::Relaxed) {
             work.mend(&mut designs);
         }
         let met = designs.iter().any(Designed::met);
@@ -255,7 +268,7 @@ impl SynthesisTask {
         if !met && !stopped.load(Ordering::Relaxed) {
             ways = work.ways();
             if designs.is_empty() {
-                designs = work.analysed(&self.synthesiser.nearest()).0;
+                designs = work.analysed(&self.synthesiser.nearest(&|part| go_on(sizing(Stage::Loosening, part)))).0;
             }
         }
         rank(&mut designs);
@@ -270,9 +283,12 @@ impl SynthesisTask {
             }
             design.report.input_name.clone_from(&design.file);
         }
+        let best = designs.first().filter(|_| met && !stopped.load(Ordering::Relaxed));
+        let compared = |part: f64| go_on(sizing(Stage::Comparing, part));
+        let tables = best.map_or_else(Vec::new, |best| self.synthesiser.tables(&best.proposal, &compared));
         Synthesised {
             effort: self.synthesiser.effort(),
-            tables: designs.first().filter(|_| met).map_or_else(Vec::new, |best| self.synthesiser.tables(&best.proposal)),
+            tables,
             designs,
             ways,
             analysed: work.analysed.into_inner(),
@@ -285,6 +301,12 @@ impl SynthesisTask {
             input_sha256: self.input_sha256.clone(),
         }
     }
+}
+
+/// A part of the family's own work.
+fn sizing(stage: Stage, part: f64) -> SynthesisProgress {
+    let done = (0..PARTS).rev().find(|i| f64::from(*i) <= part * f64::from(PARTS)).unwrap_or(0);
+    SynthesisProgress { stage, done: done as usize, of: PARTS as usize }
 }
 
 /// The first place in a table that stands in another source than the user's file.
@@ -420,7 +442,7 @@ impl Work<'_> {
     fn ways(&self) -> Vec<Way> {
         let mut ways: Vec<Way> = Vec::new();
         for slack in SLACKS {
-            let all = self.task.synthesiser.relaxations(slack);
+            let all = self.task.synthesiser.relaxations(slack, &|part| (self.go_on)(sizing(Stage::Loosening, part)));
             for (done, relaxation) in all.iter().enumerate() {
                 if !(self.go_on)(SynthesisProgress { stage: Stage::Loosening, done, of: all.len() }) {
                     break;
@@ -449,7 +471,7 @@ impl Work<'_> {
         let files = self.task.known.with(&self.task.path, &text);
         let Ok(task) = SynthesisTask::from_file(&files, &self.task.path, &[]) else { return false };
         let work = Work { task: &task, go_on: self.go_on, analysed: AtomicUsize::new(0) };
-        let proposals = task.synthesiser.proposals();
+        let proposals = task.synthesiser.proposals(&|part| (self.go_on)(sizing(Stage::Loosening, part)));
         // So many at once, whatever the number of threads: the work done is part of the result.
         let found = proposals.chunks(TOGETHER).any(|some| {
             let met: Vec<bool> = some.par_chunks(1).map(|p| work.analysed(p).0.iter().any(Designed::met)).collect();

@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
 use forcewright::base::maths;
-use forcewright::{Choices, Loaded, SynthesisTask, Synthesised};
+use forcewright::{Choices, Loaded, Stage, SynthesisTask, Synthesised};
 
 /// `SplitMix64` of Steele, Lea & Flood 2014: the same sets on every machine.
 struct Sequence(u64);
@@ -69,6 +72,10 @@ fn each_set_is_met_or_its_limit_named() {
         assert!(found.rejected.is_empty(), "{:?}\n{text}", found.rejected);
         assert!(!found.tables.is_empty());
         for design in &found.designs {
+            // The room is asked for in the file.
+            for name in ["output_drum_diameter", "output_drum_length", "input_drum_length"] {
+                assert!(design.report.outcome.check(name).is_some_and(|c| c.required), "{name}");
+            }
             let loaded =
                 Loaded::from_text(&design.file, &design.text, &Choices::default()).map_err(|e| e.render(false)).expect("a project");
             let outcome = loaded.solve(&design.file, "", &mut |_| true).outcome;
@@ -76,6 +83,36 @@ fn each_set_is_met_or_its_limit_named() {
         }
     }
     assert!(met >= 2 && met < sets.len(), "{met} of {} are met: the sets should have both", sets.len());
+}
+
+/// A search that takes long ends soon after it is told to, keeps what it found, and tells where it stands all the while.
+#[test]
+fn an_interrupted_synthesis_ends_at_once() {
+    // Limits on metrics are tested by full analyses, and this one is hardly met.
+    let text = sets(1)[0].replace("[synthesise]", "limits = { shaft_load = { max = \"4000 N\" } }\n[synthesise]");
+    for stop_at in [0.0, 0.1] {
+        let (seen, stopped) = (Mutex::new(Vec::new()), Mutex::new(None::<Instant>));
+        let found = task_of(&text).run(Path::new("asked.toml"), &|progress| {
+            let part = progress.done as f64 / progress.of as f64;
+            seen.lock().expect("sound").push((progress.stage, part));
+            let go_on = progress.stage == Stage::Sizing && part <= stop_at;
+            let mut stopped = stopped.lock().expect("sound");
+            if !go_on && stopped.is_none() {
+                *stopped = Some(Instant::now());
+            }
+            go_on
+        });
+        let stopped = stopped.into_inner().expect("sound").expect("stopped");
+        assert!(found.interrupted);
+        // Without optimisation a full analysis of what was found takes a while; a search takes minutes.
+        assert!(stopped.elapsed() < Duration::from_secs(5), "{:?}", stopped.elapsed());
+        let seen = seen.into_inner().expect("sound");
+        assert!(seen.iter().any(|(stage, _)| *stage == Stage::Sizing));
+    }
+}
+
+fn task_of(text: &str) -> SynthesisTask {
+    SynthesisTask::from_text("asked.toml", text, &[]).map_err(|e| e.render(false)).expect("understood")
 }
 
 #[test]

@@ -272,3 +272,14 @@ fn the_page_tells_what_is_cut() {
         assert!(page.contains(text), "{text}");
     }
 }
+
+/// Drums have no plane model of finite elements: that is said, and what to do instead; the other formats are written.
+#[test]
+fn turned_parts_have_no_plane_model() {
+    let text = include_str!("../../../examples/capstan/longval.toml");
+    let loaded = Loaded::from_text("longval.toml", text, &Choices::default()).map_err(|e| e.render(false)).expect("a drive");
+    let refused = loaded.export("drive", &[Format::Inp], &Options::default()).map(|_| ()).expect_err("drums are turned");
+    assert_eq!(refused.code, "E0327");
+    assert!(refused.help.contains("step") && !refused.help.contains("report"), "{}", refused.help);
+    assert!(loaded.export("drive", &[Format::Svg], &Options::default()).is_ok());
+}

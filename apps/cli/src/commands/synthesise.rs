@@ -103,9 +103,11 @@ impl Watch<'_> {
         let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if state.as_ref().is_none_or(|(stage, _)| *stage != progress.stage) {
             let what = match progress.stage {
+                Stage::Sizing => "looking through what there is",
                 Stage::Analysing => "analysing designs",
                 Stage::Searching => "searching on from the nearest",
                 Stage::Loosening => "loosening one limit at a time",
+                Stage::Comparing => "comparing with alternatives",
             };
             if let Some((_, bar)) = state.take() {
                 bar.done();

@@ -54,6 +54,8 @@ pub struct Construction {
     pub stiffness_over_square_pa: Option<Property>,
     /// Breaking force over the square of the nominal diameter, Pa.
     pub strength_over_square_pa: Option<Property>,
+    /// Mass per length over the square of the nominal diameter, kg/m³.
+    pub mass_over_square_kg_per_m3: Option<Property>,
     /// Drum over cable diameter below which life is short.
     pub least_ratio: Option<Property>,
     /// Drum over cable diameter to aim for.
@@ -113,14 +115,26 @@ impl Construction {
         self.least_ratio.as_ref().map(|ratio| ratio.value * diameter_m)
     }
 
-    /// Mass per length, kg/m; of listed sizes only.
+    /// Mass per length, kg/m: of the listed size, else by the square of the diameter; absent without a source.
+    ///
+    /// ```
+    /// let cable = forcewright_elements::cables::find("7x7 stainless").expect("in the catalogue");
+    /// assert!((cable.mass_kg_per_m(1e-3).expect("known") - 3.84e-3).abs() < 1e-12);
+    /// ```
     pub fn mass_kg_per_m(&self, diameter_m: f64) -> Option<f64> {
-        self.size(diameter_m)?.mass_kg_per_m.as_ref().map(|property| property.value)
+        let listed = self.size(diameter_m).and_then(|size| size.mass_kg_per_m.as_ref()).map(|property| property.value);
+        listed.or_else(|| self.mass_over_square_kg_per_m3.as_ref().map(|property| property.value * diameter_m * diameter_m))
     }
 
     /// All numbers with their sources.
     pub fn properties(&self) -> impl Iterator<Item = &Property> {
-        let own = [&self.stiffness_over_square_pa, &self.strength_over_square_pa, &self.least_ratio, &self.desired_ratio];
+        let own = [
+            &self.stiffness_over_square_pa,
+            &self.strength_over_square_pa,
+            &self.mass_over_square_kg_per_m3,
+            &self.least_ratio,
+            &self.desired_ratio,
+        ];
         let listed = self.sizes.iter().flat_map(|size| std::iter::once(&size.breaking_force_n).chain(&size.mass_kg_per_m));
         own.into_iter().flatten().chain(listed)
     }
@@ -220,6 +234,17 @@ mod tests {
             }
             if let (Some(least), Some(desired)) = (&construction.least_ratio, &construction.desired_ratio) {
                 assert!(least.value < desired.value, "{name}");
+            }
+            // What the factor says is what is listed, within the play of makers; wires are spread over the helix, so that it is more than their section.
+            if let Some(factor) = &construction.mass_over_square_kg_per_m3 {
+                for size in &construction.sizes {
+                    if let Some(mass) = &size.mass_kg_per_m {
+                        let ratio = mass.value / (factor.value * size.diameter_m * size.diameter_m);
+                        assert!((0.98..1.09).contains(&ratio), "{name}: {ratio}");
+                    }
+                }
+                let wires = 7850.0 * construction.metal_m2(1.0).unwrap();
+                assert!((0.8..1.2).contains(&(factor.value / wires)), "{name}: {}", factor.value / wires);
             }
             assert!(construction.sizes.windows(2).all(|pair| pair[0].diameter_m < pair[1].diameter_m), "{name}");
             for size in &construction.sizes {

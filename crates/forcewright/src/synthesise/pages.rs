@@ -28,7 +28,8 @@ impl Synthesised {
         }
         if !self.met() && self.ways.is_empty() && !self.interrupted {
             let text =
-                "no single limit is enough: loosen two of stroke, room, stress, band, depth and copies, or draw another shape".to_owned();
+                "no single limit, loosened alone, is enough: loosen two or more of the requirements and of the room, or allow more in `[synthesise]`"
+                    .to_owned();
             all.push(say("What blocks", text));
         }
         let effort = self.effort.as_ref().map_or_else(String::new, |effort| format!(" {effort}"));

@@ -11,7 +11,7 @@ pub(crate) use section::Synthesise;
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::units::{Dimension, Unit};
 use forcewright_contract::data::{Column, rows};
-use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser};
+use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser, Watch};
 use forcewright_model::{Outcome, ParameterRow, StatusKind};
 
 use crate::design::{Design, si};
@@ -157,7 +157,7 @@ impl Synthesiser for Synthesis {
         self.wanted
     }
 
-    fn proposals(&self) -> Vec<Proposal> {
+    fn proposals(&self, _: Watch<'_>) -> Vec<Proposal> {
         self.written(&self.asked, TRIED_PER_FILE * self.wanted)
     }
 
@@ -174,7 +174,7 @@ impl Synthesiser for Synthesis {
         write::read(&a.state).zip(write::read(&b.state)).is_some_and(|(a, b)| a.is_near(&b))
     }
 
-    fn relaxations(&self, slack: f64) -> Vec<Relaxation> {
+    fn relaxations(&self, slack: f64, _: Watch<'_>) -> Vec<Relaxation> {
         Knob::ALL
             .iter()
             .filter_map(|knob| limits::relaxed(&self.asked, *knob, slack, &self.length))
@@ -182,7 +182,7 @@ impl Synthesiser for Synthesis {
             .collect()
     }
 
-    fn nearest(&self) -> Vec<Proposal> {
+    fn nearest(&self, _: Watch<'_>) -> Vec<Proposal> {
         let found = Knob::ALL.iter().find_map(|knob| limits::relaxed(&self.asked, *knob, 0.0, &self.length));
         found.map_or_else(Vec::new, |(_, asked)| {
             // Only what an analysis tests is given up: the file still asks for what it asked.

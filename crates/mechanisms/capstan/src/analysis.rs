@@ -32,19 +32,20 @@ pub struct Behaviour {
     pub geometry: Drive,
     /// Tensions and stiffness in the middle of the travel.
     pub statics: Statics,
-    /// The same at an end of the travel, where the wrap before one termination is shortest.
-    pub end: Option<Statics>,
+    /// The same at an end of the travel, where the wrap before one termination, and before one side of a pin on the input, is shortest. The
+    /// other end is its mirror image.
+    pub end: Statics,
     /// Under growing torque at the output, from zero on.
     pub stations: Vec<Loaded>,
     /// Under the required torque; else what keeps it from being held.
     pub required: Option<Result<Loaded, WrapError>>,
+    /// At the end of the travel, under the required torque and its opposite.
+    pub ends: Option<[Result<Loaded, WrapError>; 2]>,
     /// The loop between the required torque and its opposite; not of the paper's model, which has no unloading.
     pub cycle: Option<Loop>,
-    /// Whether slip reaches a termination where the wrap before it is shortest, under the required torque.
-    pub reaches_end: Option<bool>,
     /// Neighbouring turns, nearest first.
     pub neighbours: Vec<Nearest>,
-    /// States computed.
+    /// States of the loaded drive computed: of the curves, the loop and at the ends of the travel.
     pub states: u64,
 }
 
@@ -55,6 +56,8 @@ pub enum NoDrive {
     Geometry(GeometryError),
     /// There is no such wrap.
     Wrap(WrapError),
+    /// The travel unwinds a fastened cable down to its pin: so much is missing, rad.
+    Unwound(f64),
 }
 
 impl std::fmt::Display for NoDrive {
@@ -62,6 +65,7 @@ impl std::fmt::Display for NoDrive {
         match self {
             Self::Geometry(error) => write!(f, "{error}"),
             Self::Wrap(error) => write!(f, "{error}"),
+            Self::Unwound(rad) => write!(f, "the travel unwinds the cable down to its pin: {rad} rad of wrap are missing on either side"),
         }
     }
 }
@@ -74,27 +78,52 @@ impl Behaviour {
     pub fn of(design: &Design) -> Result<Self, NoDrive> {
         let built = &design.built;
         let geometry = built.geometry().map_err(NoDrive::Geometry)?;
-        let statics = Statics::new(built, &built.place(&geometry, built.middle_wraps_rad()), design.source).map_err(NoDrive::Wrap)?;
-        let end = at_end(built, &geometry, design.source);
+        if built.fastened && built.least_pin_wrap_rad(&geometry) <= 0.0 {
+            return Err(NoDrive::Unwound(-built.least_pin_wrap_rad(&geometry)));
+        }
+        let at = |output_rad: f64| Statics::new(built, &built.place(&geometry, output_rad), design.source).map_err(NoDrive::Wrap);
+        let (statics, end) = (at(built.middle_rad())?, at(0.0)?);
         let torque_nm = design.requirements.as_ref().map(|r| r.torque_nm);
-        let required = torque_nm.map(|t| statics.under(t));
-        let stations = stations(&statics, built, torque_nm);
+        let mut states = 0;
+        let mut under = |statics: &Statics, torque_nm: f64| {
+            states += 1;
+            statics.under(torque_nm)
+        };
+        let required = torque_nm.map(|t| under(&statics, t));
+        let ends = torque_nm.map(|t| [under(&end, t), under(&end, -t)]);
+        let stations: Vec<Loaded> = torques_nm(&statics, built, torque_nm).into_iter().map_while(|t| under(&statics, t).ok()).collect();
         let cycle = match (torque_nm, &required, design.source) {
             (Some(torque_nm), Some(Ok(_)), Source::Corrected) => statics.cycle(torque_nm, LOOP_POINTS).ok(),
             _ => None,
         };
-        let reaches_end = match &required {
-            Some(Ok(loaded)) => Some(reaches_end(end.as_ref(), loaded.torque_nm)),
-            _ => None,
-        };
-        let states = (stations.len() + 2 * LOOP_POINTS) as u64;
+        states += cycle.as_ref().map_or(0, |l: &Loop| l.branches.iter().map(Vec::len).sum::<usize>() as u64);
         let neighbours = geometry.occupancy();
-        Ok(Self { geometry, statics, end, stations, required, cycle, reaches_end, neighbours, states })
+        Ok(Self { geometry, statics, end, stations, required, ends, cycle, neighbours, states })
     }
 
     /// The state under the required torque.
     pub fn at_torque(&self) -> Option<&Loaded> {
         self.required.as_ref()?.as_ref().ok()
+    }
+
+    /// The states under the required torque over the travel: in its middle, and at its end both ways where it is held there.
+    fn over_travel(&self) -> impl Iterator<Item = &Loaded> {
+        self.at_torque().into_iter().chain(self.ends.iter().flatten().filter_map(|end| end.as_ref().ok()))
+    }
+
+    /// Whether slip reaches a termination over the travel under the required torque; a torque that is not held at an end slips through.
+    pub fn reaches_end(&self) -> bool {
+        self.reaches(|loaded| loaded.at_end)
+    }
+
+    /// Whether slip reaches the pin of a fastened cable over the travel under the required torque.
+    pub fn reaches_pin(&self) -> bool {
+        self.reaches(|loaded| loaded.at_pin)
+    }
+
+    fn reaches(&self, at: impl Fn(&Loaded) -> bool) -> bool {
+        let states = self.required.iter().chain(self.ends.iter().flatten());
+        self.at_torque().is_some() && states.into_iter().any(|state| state.as_ref().map_or(true, &at))
     }
 
     /// sin γ and cos γ.
@@ -104,26 +133,13 @@ impl Behaviour {
     }
 }
 
-/// States under even torques up to somewhat more than the required one, or to where the drive slips.
-fn stations(statics: &Statics, built: &Built, torque_nm: Option<f64>) -> Vec<Loaded> {
+/// Even torques up to somewhat more than the required one, or to where the drive slips, N·m.
+fn torques_nm(statics: &Statics, built: &Built, torque_nm: Option<f64>) -> Vec<f64> {
     let slips_nm = statics.gross_slip_nm();
     let preload_n: f64 = built.cables.iter().map(|c| c.preload_left_n(built)).sum();
     let usual_nm = torque_nm.map_or_else(|| 2.0 * preload_n * statics.levers_m()[1], |t| BEYOND * t);
     let top_nm = slips_nm.map_or(usual_nm, |slips_nm| usual_nm.min(SHORT_OF_SLIP * slips_nm));
-    (0..=STATIONS).map_while(|i| statics.under(top_nm * i as f64 / STATIONS as f64).ok()).collect()
-}
-
-/// The drive at an end of its travel; the other end is its mirror image.
-fn at_end(built: &Built, geometry: &Drive, source: Source) -> Option<Statics> {
-    // Without a guard nothing is wrapped there; a wrap must have some angle.
-    let shortest = built.guard_rad.max(1e-9);
-    Statics::new(built, &built.place(geometry, [shortest, shortest + built.travel_rad]), source).ok()
-}
-
-/// Whether slip reaches a termination at an end of the travel, loaded either way; a torque that is not held there slips through.
-fn reaches_end(end: Option<&Statics>, torque_nm: f64) -> bool {
-    let at = |torque_nm: f64| end.and_then(|s| s.under(torque_nm).ok()).is_none_or(|l| l.at_end);
-    at(torque_nm) || at(-torque_nm)
+    (0..=STATIONS).map(|i| top_nm * i as f64 / STATIONS as f64).collect()
 }
 
 /// Every metric that the behaviour has.
@@ -145,7 +161,7 @@ fn measure_statics(m: &mut Measured, built: &Built, behaviour: &Behaviour) {
     let initial = statics.initial_nm_per_rad();
     m.set("stiffness_initial_output", initial);
     m.set("stiffness_initial_input", initial / (built.ratio() * built.ratio()));
-    let ends_nm = behaviour.end.as_ref().and_then(Statics::gross_slip_nm);
+    let ends_nm = behaviour.end.gross_slip_nm();
     m.set("gross_slip_torque_output", statics.gross_slip_nm().map(|nm| nm.min(ends_nm.unwrap_or(nm))));
     m.set("preload_left", built.cables.iter().map(|c| c.preload_left_n(built)).fold(f64::INFINITY, f64::min));
     m.set("ratio", built.ratio());
@@ -167,11 +183,11 @@ fn measure_loaded(m: &mut Measured, built: &Built, behaviour: &Behaviour, loaded
     }
     m.set("wind_up_output", loaded.turn_rad);
     m.set("taut_tension", taut_n(behaviour, loaded).into_iter().reduce(f64::max));
-    m.set("slack_tension", loaded.tensions_n.iter().map(|t| t[1]).fold(f64::INFINITY, f64::min));
+    m.set("slack_tension", behaviour.over_travel().flat_map(|l| l.tensions_n.iter().flatten()).copied().fold(f64::INFINITY, f64::min));
     let most = |side: usize| loaded.slip_rad.iter().flat_map(|s| s[side]).fold(0.0, f64::max);
     m.set("slip_angle_taut", most(0));
     m.set("slip_angle_slack", most(1));
-    m.set("slip_used", loaded.slip_rad.iter().map(|s| slip_used(built, behaviour, s)).fold(0.0, f64::max));
+    m.set("slip_used", if built.fastened { pin_used(built, behaviour) } else { slip_used(behaviour, loaded) });
     let stiffness = statics.torsional(loaded.tangent_n_per_m, 1);
     let [input, output] = built.inertia_kg_m2;
     let hertz = |inverse: f64| (stiffness * inverse).sqrt() / TAU;
@@ -182,17 +198,33 @@ fn measure_loaded(m: &mut Measured, built: &Built, behaviour: &Behaviour, loaded
 
 /// Largest tension of each cable under the required torque, in the middle of the travel and at its ends, N.
 fn taut_n(behaviour: &Behaviour, loaded: &Loaded) -> Vec<f64> {
-    let torque_nm = loaded.torque_nm;
-    let ends = [torque_nm, -torque_nm].map(|t| behaviour.end.as_ref().and_then(|s| s.under(t).ok()));
-    let places = || std::iter::once(loaded).chain(ends.iter().flatten());
-    (0..loaded.tensions_n.len()).map(|i| places().flat_map(|l| l.tensions_n[i]).fold(f64::NEG_INFINITY, f64::max)).collect()
+    let most = |i: usize| behaviour.over_travel().flat_map(|l| l.tensions_n[i]).fold(f64::NEG_INFINITY, f64::max);
+    (0..loaded.tensions_n.len()).map(most).collect()
 }
 
 /// Part of the wrap on the input drum on which a cable slips.
-fn slip_used(built: &Built, behaviour: &Behaviour, slip_rad: &[[f64; 2]; 2]) -> f64 {
+fn slip_used(behaviour: &Behaviour, loaded: &Loaded) -> f64 {
     let wrap_rad = behaviour.geometry.input_wrap_rad();
-    let [one, other] = slip_rad.map(|side| side[1]);
-    if built.fastened { one.max(other) / (0.5 * wrap_rad) } else { (one + other) / wrap_rad }
+    loaded.slip_rad.iter().map(|[one, other]| (one[1] + other[1]) / wrap_rad).fold(0.0, f64::max)
+}
+
+/// Angle that slip needs on the input drum, `|ln(T/T_p)|/μ`, over the wrap up to the pin: the largest over the travel; above 1 the pin feels
+/// the load, infinite where a side is loose.
+fn pin_used(built: &Built, behaviour: &Behaviour) -> f64 {
+    let geometry = &behaviour.geometry;
+    let place = |output_rad: f64| built.place(geometry, output_rad);
+    let (middle, end) = (place(built.middle_rad()), place(0.0));
+    let cos = if built.helix_correction { maths::cos(end.helix_rad) } else { 1.0 };
+    let friction = built.friction * built.groove_factor * cos;
+    let used = |loaded: &Loaded, wraps_rad: [f64; 2]| {
+        let needed = |(tensions_n, cable): (&[f64; 2], &crate::design::Cable)| {
+            let of = |side: usize| maths::ln(tensions_n[side] / cable.preload_left_n(built)).abs() / friction / wraps_rad[side];
+            of(0).max(of(1))
+        };
+        loaded.tensions_n.iter().zip(&built.cables).map(needed).fold(0.0, f64::max)
+    };
+    let ends = behaviour.ends.iter().flatten().filter_map(|end| end.as_ref().ok()).map(|l| used(l, end.input_wraps_rad));
+    behaviour.at_torque().map(|l| used(l, middle.input_wraps_rad)).into_iter().chain(ends).fold(0.0, f64::max)
 }
 
 fn measure_losses(m: &mut Measured, built: &Built, behaviour: &Behaviour) {
@@ -233,6 +265,9 @@ fn measure_geometry(m: &mut Measured, design: &Design, behaviour: &Behaviour) {
     let margins_m = [design.making.margin_m; 2];
     m.set("input_drum_length", geometry.drum_length_m(Drum::Input, margins_m).ok());
     m.set("output_drum_length", geometry.drum_length_m(Drum::Output, margins_m).ok());
+    let beyond_m = 0.5 * built.cable_m() + built.land_m();
+    m.set("output_drum_diameter", 2.0 * (built.radii_m[1] + beyond_m));
+    m.set("length_over_drums", built.distance_m + built.radii_m[0] + built.radii_m[1] + 2.0 * beyond_m);
     let cut = |i: usize| {
         let cable = &built.cables[i];
         geometry.cut_length_m(i, [design.making.anchor_m; 2], cable.preload_n, cable.axial_stiffness_n).ok()

@@ -1,17 +1,20 @@
 //! Requirements and rules against what was found.
 
+mod limits;
+
 use std::fmt::Write as _;
 
+use forcewright_base::maths;
 use forcewright_base::roots::root;
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::judge::Comparison;
+use forcewright_elements::cables::strength_left;
 use forcewright_elements::grooves::Groove;
 use forcewright_elements::wrap::WrapError;
 use forcewright_model::{Check, Sense};
 
 use crate::analysis::{Behaviour, Measured};
 use crate::design::{Design, DisplayUnits, Requirements, Source};
-use crate::losses::unknown;
 use crate::metrics::METRICS;
 use crate::statics::Statics;
 
@@ -58,6 +61,7 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.push(context.bending());
     all.extend(context.slack());
     all.extend(context.termination());
+    all.extend(context.pin());
     all.push(context.fleet());
     all.push(context.turns());
     all.extend(context.grooves());
@@ -135,7 +139,7 @@ impl Context<'_> {
             format!(
                 "it grows in proportion to the preload: {} times as much holds the torque; another turn on the input drum multiplies the ratio of the tensions by {}",
                 format_number(1.006 * requirements.torque_nm / held_nm, 3),
-                format_number(forcewright_base::maths::exp(std::f64::consts::TAU * self.design.built.friction * self.design.built.groove_factor), 3)
+                format_number(maths::exp(std::f64::consts::TAU * self.design.built.friction * self.design.built.groove_factor), 3)
             )
         });
         let basis = "gross slip: ln(T_taut/T_slack) = μΘ on the input drum, both sides with one displacement, in the middle of the travel and at its ends; in the paper's model 2 T_p tanh(μΘ/2)";
@@ -168,14 +172,13 @@ impl Context<'_> {
         let at = |factor: f64| {
             let mut built = self.design.built.clone();
             built.cables.iter_mut().for_each(|c| c.preload_n *= factor);
-            let statics =
-                Statics::new(&built, &built.place(&self.behaviour.geometry, built.middle_wraps_rad()), self.design.source).ok()?;
+            let statics = Statics::new(&built, &built.place(&self.behaviour.geometry, built.middle_rad()), self.design.source).ok()?;
             Some(statics.torsional(statics.under(torque_nm).ok()?.tangent_n_per_m, 1))
         };
-        let gap = |log: f64| at(forcewright_base::maths::exp(log)).unwrap_or(0.0) - wanted;
-        match root(gap, 0.0, forcewright_base::maths::ln(MOST_PRELOAD), 1e-6) {
+        let gap = |log: f64| at(maths::exp(log)).unwrap_or(0.0) - wanted;
+        match root(gap, 0.0, maths::ln(MOST_PRELOAD), 1e-6) {
             Ok(log) => {
-                let factor = forcewright_base::maths::exp(log);
+                let factor = maths::exp(log);
                 format!(
                     "a preload {} times as high gives it; a shorter span, more cables or grooves with more friction help too",
                     format_number(1.0005 * factor, 4)
@@ -203,42 +206,6 @@ impl Context<'_> {
         Some(Comparison { limit: Some(limit), fix, missing, ..base }.judge())
     }
 
-    /// CAPS004: limits on metrics.
-    fn limits(&self, requirements: &Requirements) -> Vec<Check> {
-        let mut all = Vec::new();
-        for limit in &requirements.limits {
-            let Some(info) = METRICS.get(limit.metric) else { continue };
-            for (bound, sense, suffix) in [(limit.min, Sense::AtLeast, "at least"), (limit.max, Sense::AtMost, "at most")] {
-                let Some(bound) = bound else { continue };
-                let base = self.base("CAPS004", info.name, &format!("{} ({suffix})", info.name), info.name);
-                let missing = self.missing_metric(info.name);
-                let fix = "change the design, or the limit".to_owned();
-                all.push(Comparison { limit: Some(bound), sense, missing, fix, ..base }.judge());
-            }
-        }
-        all
-    }
-
-    /// What a metric that has no value needs.
-    fn missing_metric(&self, name: &str) -> String {
-        let built = &self.design.built;
-        match name {
-            "backdrive_torque_output" | "efficiency_forward" | "efficiency_backward" | "torque_input" => {
-                let unknown = unknown(built);
-                if unknown.is_empty() { self.missing() } else { format!("not known: {}", unknown.join(", ")) }
-            }
-            "torsional_frequency" | "torsional_frequency_free" | "reflected_inertia_output" if built.inertia_kg_m2.contains(&None) => {
-                "give `inertia.input` and `inertia.output`".to_owned()
-            }
-            "wire_bending_stress" => "give `wire_diameter` and `wire_modulus` of the cables".to_owned(),
-            "cable_safety_factor" if built.cables.iter().any(|c| c.breaking_n.is_none()) => {
-                "give `breaking_force` of the cables".to_owned()
-            }
-            "gross_slip_torque_output" => "fastened cables do not slip as a whole".to_owned(),
-            _ => self.missing(),
-        }
-    }
-
     /// CAPS005: breaking force over the largest tension.
     fn strength(&self) -> Option<Check> {
         let wanted = self.design.requirements.as_ref().and_then(|r| r.safety_factor);
@@ -247,12 +214,7 @@ impl Context<'_> {
         }
         let base = self.base("CAPS005", "strength", "Strength of the cables", "cable_safety_factor");
         let limit = wanted.unwrap_or(1.0);
-        let fix = base.value.map_or_else(String::new, |value| {
-            format!(
-                "the strength grows as the square of the diameter: {} times as thick a cable, or less preload",
-                format_number((limit / value).sqrt(), 3)
-            )
-        });
+        let fix = base.value.map_or_else(String::new, |value| self.stronger(limit / value));
         let basis = "breaking force over the largest tension under the required torque, of steel less what bending takes; without `requirements.safety_factor` against 1, where it breaks";
         let missing = self.missing_metric("cable_safety_factor");
         Some(
@@ -267,6 +229,33 @@ impl Context<'_> {
             }
             .judge(),
         )
+    }
+
+    /// What makes the cables so many times as strong. Tensions do not depend on AE where it is the same all along, so that on the same drums
+    /// the strength of a cable f times as thick is f² times what bending leaves of it.
+    fn stronger(&self, missing: f64) -> String {
+        let built = &self.design.built;
+        let ratio = 2.0 * built.radii_m[0].min(built.radii_m[1]) / built.cable_m();
+        let bends = built.cables.iter().any(|c| c.wire_m.is_some());
+        let kept = |ratio: f64| if bends { strength_left(ratio) } else { Some(1.0) };
+        let Some(now) = kept(ratio) else { return "the drums are smaller than the cable is thick".to_owned() };
+        let gain = |f: f64| f * f * kept(ratio / f).unwrap_or(0.0) / now;
+        // Bending is not tabled below a drum as thick as the cable.
+        let most = if bends { ratio } else { 1e3 };
+        let thicker = root(|f| gain(f) - 1.003 * missing, 1.0, most.max(1.0), 1e-6).ok();
+        let thicker = thicker.map_or_else(
+            || "no thicker cable alone does it on these drums, as they bend it more: larger drums".to_owned(),
+            |f| {
+                // Rounded up to three digits.
+                let f = (1e3 * f).ceil() / 1e3;
+                format!(
+                    "the strength grows as the square of the diameter, less what bending takes: {} times as thick a cable, of {}, on the same drums",
+                    format_number(f, 4),
+                    self.length(f * built.cable_m())
+                )
+            },
+        );
+        format!("{thicker}; or more cables, larger drums, less preload")
     }
 
     /// CAPS006: drum over cable diameter.
@@ -288,17 +277,33 @@ impl Context<'_> {
 
     /// CAPS007: the slack side keeps some tension.
     fn slack(&self) -> Option<Check> {
-        self.behaviour.at_torque()?;
+        let fastened = self.design.built.fastened;
+        let held = self.behaviour.at_torque().is_some();
+        self.behaviour.required.as_ref().filter(|_| held || fastened)?;
         let base = self.base("CAPS007", "slack", "Slack side stays taut", "slack_tension");
         let scale = self.measured.get("preload_left");
-        let fix = "raise the preload: a slack cable leaves its groove".to_owned();
-        let basis = "smallest tension under the required torque; the margin is relative to the preload";
+        let fix = "raise the preload: a slack cable leaves its groove, and the taut side carries alone".to_owned();
+        let basis = if fastened {
+            "smallest tension under the required torque over the travel; a fastened cable does not slip as a whole, this is what it holds; the margin is relative to the preload"
+        } else {
+            "smallest tension under the required torque over the travel; the margin is relative to the preload"
+        };
         // A loose side carries exactly nothing.
         let loose = base.value.is_some_and(|n| n <= 0.0);
         let value = if loose { Some(-f64::MIN_POSITIVE) } else { base.value };
         Some(
-            Comparison { required: false, value, limit: Some(0.0), sense: Sense::AtLeast, scale, fix, basis: basis.to_owned(), ..base }
-                .judge(),
+            Comparison {
+                required: fastened,
+                value,
+                limit: Some(0.0),
+                sense: Sense::AtLeast,
+                scale,
+                fix,
+                basis: basis.to_owned(),
+                broken: !held,
+                ..base
+            }
+            .judge(),
         )
     }
 
@@ -316,6 +321,31 @@ impl Context<'_> {
         Some(Comparison { required: false, limit: Some(needed), sense: Sense::AtLeast, fix, basis: basis.to_owned(), ..base }.judge())
     }
 
+    /// CAPS014: slip ends before the pin on the input.
+    fn pin(&self) -> Option<Check> {
+        let built = &self.design.built;
+        if !built.fastened {
+            return None;
+        }
+        self.behaviour.at_torque()?;
+        let base = self.base("CAPS014", "pin_wrap", "Slip ends before the pin", "slip_used");
+        let fix = base.value.map_or_else(
+            || "a side is loose: raise the preload".to_owned(),
+            |used| {
+                let least_rad = built.least_pin_wrap_rad(&self.behaviour.geometry);
+                let turns = (2.0 * (used - 1.0).max(0.0) * least_rad / std::f64::consts::TAU).ceil();
+                format!(
+                    "the pin carries part of the change of the tension: about {} more `extra_turns`, less travel or more preload",
+                    format_number(turns.max(1.0), 3)
+                )
+            },
+        );
+        let basis =
+            "angle |ln(T/T_p)|/μ that slip needs on the input drum over the wrap up to the pin, where the travel leaves the least of it";
+        let broken = self.behaviour.reaches_pin();
+        Some(Comparison { required: false, limit: Some(1.0), fix, basis: basis.to_owned(), broken, ..base }.judge())
+    }
+
     /// CAPS009: spans against their grooves.
     fn fleet(&self) -> Check {
         let base = self.base("CAPS009", "fleet", "Fleet angle", "fleet_angle");
@@ -326,6 +356,12 @@ impl Context<'_> {
             .map(|a| a.centre_distance_m)
             .min_by(|a, b| (a - built.distance_m).abs().total_cmp(&(b - built.distance_m).abs()));
         let phase = self.behaviour.geometry.aligning_phase_rad(0).ok();
+        if built.seat.groove == Groove::Flat {
+            let basis = "smooth drums have no groove to be out of line with: the spans slant by the angle of the helix, against 1.5°, makers' rule for smooth running";
+            let pitch_m = std::f64::consts::TAU * built.radii_m[0] * maths::tan(LARGEST_FLEET_RAD);
+            let fix = format!("a pitch of at most {}, or a larger input drum; or grooves", self.length(0.999 * pitch_m));
+            return Comparison { required: false, limit: Some(LARGEST_FLEET_RAD), fix, basis: basis.to_owned(), ..base }.judge();
+        }
         let mut fix = "the cable climbs out of its groove".to_owned();
         if let Some(distance_m) = nearest {
             let _ = write!(fix, ": both spans are in line at a centre distance of {}", self.length(distance_m));
@@ -410,10 +446,14 @@ impl Context<'_> {
     /// CAPS013: the drums with their cables clear each other.
     fn gap(&self) -> Check {
         let base = self.base("CAPS013", "gap", "Drums clear each other", "rope_clearance");
-        let gap_m = self.behaviour.geometry.drum_gap_m();
-        let cable_m = self.design.built.cable_m();
-        let fix = format!("a centre distance of at least {}", self.length(self.design.built.distance_m - gap_m));
-        let basis = "gap between the cables on both drums on the line of centres; the margin is relative to the cable's diameter";
+        let built = &self.design.built;
+        let (gap_m, cable_m) = (built.gap_m(), built.cable_m());
+        // Rounded to four digits it must still clear.
+        let mut fix = format!("a centre distance of at least {}", self.length(1.0005 * (built.distance_m - gap_m)));
+        if built.land_m() > 0.0 {
+            fix += ", or shallower grooves";
+        }
+        let basis = "gap between both drums on the line of centres, to the surface of the cable or of a land that stands higher; the margin is relative to the cable's diameter";
         Comparison {
             required: false,
             value: Some(gap_m),

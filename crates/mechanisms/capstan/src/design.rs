@@ -3,6 +3,8 @@
 pub(crate) mod cables;
 mod groove;
 
+use std::f64::consts::TAU;
+
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::maths;
 use forcewright_base::units::{Dimension, Quantity, Unit, format_number, format_si};
@@ -113,6 +115,8 @@ pub struct Making {
     pub bores_m: [Option<f64>; 2],
     /// Holes for the anchors, m.
     pub hole_m: f64,
+    /// Least wall that the process leaves, m, and whether the project says so.
+    pub least_wall: (f64, bool),
     /// By how much printed grooves are wider, m.
     pub clearance_m: Option<f64>,
     /// Of the drums, kg/m³.
@@ -151,6 +155,11 @@ pub struct DisplayUnits {
     pub small_angle: Unit,
 }
 
+/// Least wall where the project has no `[parts]`, m: as described there.
+const LEAST_WALL_M: f64 = 0.2e-3;
+/// In place of no wrap at all, rad.
+const LEAST_WRAP_RAD: f64 = 1e-9;
+
 impl Built {
     /// Where the cables lie.
     ///
@@ -186,21 +195,41 @@ impl Built {
         self.cables.first().map_or(0.0, |c| c.diameter_m)
     }
 
-    /// What statics need, with these wraps on the output drum.
-    pub fn place(&self, geometry: &Drive, output_wraps_rad: [f64; 2]) -> Place {
+    /// What statics need at an angle of the output, rad from 0 to the travel. As it grows, end 0 winds up on the output; a pin on the input
+    /// turns towards the span of that end, `R` times as fast: `Θ/2 ± R(τ/2 − α)` of its wrap are left on either side.
+    pub fn place(&self, geometry: &Drive, output_rad: f64) -> Place {
         let helix_rad = geometry.helix_angle_rad();
         let span_m = geometry.free_span_m();
+        let half_rad = 0.5 * geometry.input_wrap_rad();
+        let turned_rad = if self.fastened { self.ratio() * (0.5 * self.travel_rad - output_rad) } else { 0.0 };
+        // Without a guard nothing is wrapped at an end; a wrap must have some angle.
+        let output_wraps_rad = [output_rad, self.travel_rad - output_rad].map(|rad| (self.guard_rad + rad).max(LEAST_WRAP_RAD));
         Place {
             span_m: if self.helix_correction { span_m / maths::cos(helix_rad) } else { span_m },
             helix_rad,
-            input_wrap_rad: geometry.input_wrap_rad(),
+            input_wraps_rad: [half_rad + turned_rad, half_rad - turned_rad],
             output_wraps_rad: vec![output_wraps_rad; self.cables.len()],
         }
     }
 
-    /// Wraps of the two ends on the output drum in the middle of the travel, rad.
-    pub fn middle_wraps_rad(&self) -> [f64; 2] {
-        [self.guard_rad + 0.5 * self.travel_rad; 2]
+    /// Angle of the output in the middle of the travel, rad.
+    pub fn middle_rad(&self) -> f64 {
+        0.5 * self.travel_rad
+    }
+
+    /// Wrap between a pin on the input and the nearer span at an end of the travel, rad; not above 0 where the travel unwinds it.
+    pub fn least_pin_wrap_rad(&self, geometry: &Drive) -> f64 {
+        0.5 * (geometry.input_wrap_rad() - self.ratio() * self.travel_rad)
+    }
+
+    /// How far lands stand above the surface of the cable, m; 0 where they do not.
+    pub fn land_m(&self) -> f64 {
+        (self.seat.depth_for_m(self.cable_m()) - self.cable_m()).max(0.0)
+    }
+
+    /// Gap between the drums on the line of centres, to the surface of the cables or of the lands, m.
+    pub fn gap_m(&self) -> f64 {
+        self.distance_m - self.radii_m[0] - self.radii_m[1] - self.cable_m() - 2.0 * self.land_m()
     }
 
     /// Turns of the input over turns of the output.
@@ -252,6 +281,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
             anchor_m: si(&parts.anchor_length).unwrap_or(20.0 * cable_m),
             bores_m: [si(&parts.input_bore), si(&parts.output_bore)],
             hole_m: si(&parts.anchor_hole).unwrap_or(1.2 * cable_m),
+            least_wall: parts.least_wall.as_ref().map_or((LEAST_WALL_M, false), |l| (l.value.si, l.origin == Origin::File)),
             clearance_m: si(&parts.print_clearance),
             density_kg_per_m3: si(&parts.density),
         },
@@ -312,7 +342,7 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
     })
 }
 
-/// E0701, E0705, E0706: what the numbers give together is a drive.
+/// E0701, E0702, E0705 to E0707: what the numbers give together is a drive.
 fn check(spec: &Spec, built: &Built, source: Source, diagnostics: &mut Diagnostics) {
     let geometry = match built.geometry() {
         Ok(geometry) => geometry,
@@ -356,13 +386,47 @@ fn check(spec: &Spec, built: &Built, source: Source, diagnostics: &mut Diagnosti
                 .help("use `source = \"corrected\"`, or make the cables equal"),
         );
     }
-    if let Err(error) = Statics::new(built, &built.place(&geometry, built.middle_wraps_rad()), source) {
+    let deepest_m = built.distance_m - built.radii_m[0] - built.radii_m[1] + built.cable_m();
+    if built.seat.depth_m.is_some_and(|depth_m| depth_m >= deepest_m) {
+        let at = span_of(spec.design.groove.depth.as_ref(), spec);
+        let length = format_si(0.9995 * deepest_m, &unit_or(spec.design.groove.depth.as_ref(), "mm", Dimension::Length), 4);
+        let error = Diagnostic::error("E0702", at, "the lands of one drum reach the bottom of the grooves of the other");
+        diagnostics.push(
+            error
+                .label("this depth")
+                .help(format!("at this centre distance less than {length}; what the seat needs is taken without `depth`")),
+        );
+        return;
+    }
+    if built.fastened && built.least_pin_wrap_rad(&geometry) <= 0.0 {
+        diagnostics.push(unwinds(&geometry, spec, built));
+        return;
+    }
+    if let Err(error) = Statics::new(built, &built.place(&geometry, built.middle_rad()), source) {
         diagnostics.push(
             Diagnostic::error("E0701", place_of(&spec.design), format!("the cables cannot be computed: {error}"))
                 .label("this drive")
                 .help("look for a number that is much too small or too large"),
         );
     }
+}
+
+/// E0707: the travel unwinds a fastened cable down to its pin.
+fn unwinds(geometry: &Drive, spec: &Spec, built: &Built) -> Diagnostic {
+    let angle = |rad: f64| format_si(rad, &unit_or(spec.design.travel.as_ref(), "deg", Dimension::Angle), 4);
+    let (wrap_rad, turned_rad) = (geometry.input_wrap_rad(), built.ratio() * built.travel_rad);
+    let more = ((turned_rad - wrap_rad) / TAU).floor() + 1.0;
+    Diagnostic::error(
+        "E0707",
+        span_of(spec.design.travel.as_ref(), spec),
+        "the travel unwinds the cable from the input drum down to its pin",
+    )
+    .label(format!("the input turns by {}, the wrap is {}", angle(turned_rad), angle(wrap_rad)))
+    .help(format!(
+        "a pin in the middle of the wrap allows a travel below {}; or `extra_turns = {}`, or `input_hold = \"friction\"`",
+        angle(wrap_rad / built.ratio()),
+        few(f64::from(built.extra_turns) + more)
+    ))
 }
 
 fn no_geometry(error: &GeometryError, spec: &Spec, built: &Built) -> Diagnostic {

@@ -26,19 +26,23 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "CAPS004",
         "limit on a metric",
-        "A metric against `requirements.limits`. A metric that has no value is not assessed; the check says what is missing.",
+        "A metric against `requirements.limits`. A metric that has no value is not assessed; the check says what is missing. A limit that is missed says what moves the metric. Load of the shafts, resonance, reflected inertia and backdriving have checks of their own, CAPS015 to CAPS018.",
     ),
     code(
         "CAPS005",
         "strength of the cables",
-        "Breaking force over the largest tension under the required torque. A steel cable on a drum keeps only part of its strength (Carl Stahl Sava's table, by D/d); that is taken off. With `requirements.safety_factor` it is required; without, it is held against 1, where the cable breaks. Practice asks for 3 to 8, more where people depend on it.",
+        "Breaking force over the largest tension under the required torque. A steel cable on a drum keeps only part of its strength (Carl Stahl Sava's table, by D/d); that is taken off. With `requirements.safety_factor` it is required; without, it is held against 1, where the cable breaks. A thicker cable on the same drums is bent more: the advice counts that. Practice asks for 3 to 8, more where people depend on it.",
     ),
     code(
         "CAPS006",
         "drum over cable diameter",
         "A cable that is bent sharply tires early: the ratio of the smaller drum's diameter, to the middle of the cable, to that of the cable, against the least ratio of its construction. For steel 7×19 that is 18, for 7×7 28, for braided fibre 8 (docs/reference/cables.md).",
     ),
-    code("CAPS007", "slack side stays taut", "The smallest tension under the required torque. A cable without tension leaves its groove."),
+    code(
+        "CAPS007",
+        "slack side stays taut",
+        "The smallest tension under the required torque, in the middle of the travel and at its ends. A cable without tension leaves its groove. A cable that is fastened to the input drum does not slip as a whole; for it this is the limit, and required.",
+    ),
     code(
         "CAPS008",
         "slip ends before the terminations",
@@ -47,7 +51,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "CAPS009",
         "fleet angle",
-        "The angle between a span and its groove. It is zero where (1 + R) inv γ = kπ, with the second group of grooves turned by their own phase, or with the right ratio of radii; otherwise the cable climbs one flank. Against 1.5°, makers' rule for smooth running.",
+        "The angle between a span and its groove. It is zero where (1 + R) inv γ = kπ, with the second group of grooves turned by their own phase, or with the right ratio of radii; otherwise the cable climbs one flank. Smooth drums have no grooves: there it is the angle of the helix, which pitch and input drum make. Against 1.5°, makers' rule for smooth running.",
     ),
     code(
         "CAPS010",
@@ -64,7 +68,36 @@ pub(crate) const CODES: &[Explanation] = &[
         "radius of the seat",
         "A seat narrower than the cable pinches it, one that is too wide flattens it: 0.53 of the diameter is usual; at 0.6 a steel cable endures two thirds as many bends (Feyrer 2015).",
     ),
-    code("CAPS013", "drums clear each other", "The gap between the cables on both drums on the line of centres."),
+    code(
+        "CAPS013",
+        "drums clear each other",
+        "The gap between both drums on the line of centres, to the surface of the cables, or of the lands where `groove.depth` makes them stand higher than the cable.",
+    ),
+    code(
+        "CAPS014",
+        "slip ends before the pin",
+        "A cable that is fastened to the input drum in the middle of its wrap unwinds towards the pin on one side as the drive turns: at the ends of the travel only (Θ − Rτ)/2 of the wrap Θ is left there. Where the angle |ln(T/T_p)|/μ that slip needs is larger, the pin carries part of the change of the tension.",
+    ),
+    code(
+        "CAPS015",
+        "load of the shafts",
+        "The largest load of a shaft by the cables, at rest or under the required torque, against `requirements.limits.shaft_load`: what its bearings and the frame carry. The load at rest is 2 ΣT_p sin γ; under a torque √((ΣT₀ + T₁)² sin²γ + F² cos²γ).",
+    ),
+    code(
+        "CAPS016",
+        "resonance",
+        "The torsional frequency against `requirements.limits.torsional_frequency` (input held) or `torsional_frequency_free`: √(K/J)/2π with the tangent stiffness under the required torque. Not assessed without `[inertia]`.",
+    ),
+    code(
+        "CAPS017",
+        "reflected inertia",
+        "What is felt at the output, J_out + R² J_in, against `requirements.limits.reflected_inertia_output`. Not assessed without `inertia.input` and `inertia.output`.",
+    ),
+    code(
+        "CAPS018",
+        "backdriving",
+        "The torque at the output that turns the drive with the input free, or the efficiency backwards, against `requirements.limits.backdrive_torque_output` or `efficiency_backward`. Bearings under the load of the cables, bending of the cables and drags make it; not assessed while one of them is not known.",
+    ),
     code(
         "CAPS020",
         "wall of a drum",
@@ -73,7 +106,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "CAPS021",
         "land between grooves",
-        "The width of the land between neighbouring grooves at the surface. A cable drive says nothing of the process, so it is not assessed: compare it with the least wall that the process can make.",
+        "The width of the land between neighbouring grooves at the surface, against `parts.least_wall`, the least wall that the process leaves. Without it against 0.2 mm, which is our choice for turned metal and not required; printers need about two widths of their nozzle.",
     ),
     code(
         "CAPS022",
@@ -83,7 +116,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "E0701",
         "no such drive",
-        "The drums overlap, or a number of the geometry is out of its range. The centre distance must be larger than both radii to the middle of the cable together.",
+        "The drums overlap, or a number of the geometry is out of its range. The centre distance must be larger than both radii to the middle of the cable together. A `groove.depth` whose lands reach the other drum is E0702.",
     ),
     code(
         "E0702",
@@ -111,6 +144,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "Bedding in, creep and a change of the temperature leave no preload, or what they leave is not known: a change of temperature needs the expansion of drums and frame and that of the cables.",
     ),
     code(
+        "E0707",
+        "a travel that unwinds a fastened cable",
+        "With `input_hold = \"fastened\"` the cable is pinned in the middle of its wrap on the input. While the output turns by its travel τ, the input turns by Rτ, and the pin moves towards one span and away from the other: (Θ − Rτ)/2 of the wrap Θ is left at the ends. It must be above 0: less travel, more `extra_turns`, a smaller ratio, or `input_hold = \"friction\"`.",
+    ),
+    code(
+        "E0708",
+        "too many cables",
+        "All cables lie side by side on the one helix of the input drum, and each pair of neighbours is looked at over the travel: more than 32 are refused.",
+    ),
+    code(
         "E0730",
         "no such drum",
         "The drums cannot be turned as drawn: grooves that leave no land between, a bore that leaves no wall, a groove deeper than the drum. The message names the number; `[parts]` and `design.groove` set it.",
@@ -136,11 +179,20 @@ pub(crate) const CODES: &[Explanation] = &[
         "A synthesis computes with the corrected model at the temperature of assembly. Add the paper's model or a change of temperature to the files written, and look at what `solve` says.",
     ),
     code(
+        "E0723",
+        "a limit that a synthesis cannot test",
+        "A limit on a metric that has no value for any design of the synthesis can never be met: backdriving and efficiency need `bending_loss` and the `bearings` of `[synthesise]`, frequencies and reflected inertia need `[inertia]`. The message names the keys that are missing.",
+    ),
+    code(
         "W0701",
         "a groove with much friction",
         "A factor near π/2 needs a full half circle under uniform pressure. Seats of 120 to 150° that are worn in give 1.17 to 1.36.",
     ),
-    code("W0702", "slip reaches a termination", "The cable slips over the whole of a wrap on the output drum, up to its anchor."),
+    code(
+        "W0702",
+        "slip reaches a termination",
+        "The cable slips over the whole of a wrap: on the output drum up to its anchor, or on the input drum up to the pin to which it is fastened.",
+    ),
     code(
         "W0703",
         "backdriving is not assessed",

@@ -142,12 +142,15 @@ fn checks(design: &Design, geometry: &Drive, made: &Made) -> Vec<Check> {
     if let Some(groove) = &made.groove {
         let start_m = groove.start_m[0];
         let land_m = spacing_m(geometry, made.drum) + 2.0 * start_m;
-        let land = base("CAPS021", format!("{name}_land"), format!("Land between the grooves of the {name} drum"), land_m, None);
-        let missing = format!(
-            "the land is {} wide; the least wall of the process is not known to a cable drive: compare it with that",
-            format_si(land_m, &design.units.length, 3)
+        let (least_m, required) = design.making.least_wall;
+        let land = base("CAPS021", format!("{name}_land"), format!("Land between the grooves of the {name} drum"), land_m, Some(least_m));
+        let length = |m: f64| format_si(m, &design.units.length, 4);
+        let fix = format!(
+            "`groove.pitch` of at least {}, shallower grooves, or a process with a smaller `parts.least_wall`",
+            length(1.0005 * design.built.pitch_m * (1.0 + (least_m - land_m) / spacing_m(geometry, made.drum)))
         );
-        all.push(Comparison { basis: "land between neighbouring grooves along the axis".to_owned(), missing, ..land }.judge());
+        let basis = "land between neighbouring grooves along the axis against `parts.least_wall`; without it against 0.2 mm, our choice for turned metal".to_owned();
+        all.push(Comparison { basis, fix, required, ..land }.judge());
     }
     if made.drum == Drum::Input && design.built.fastened {
         let turned = geometry.ratio() * geometry.layout().travel_rad;

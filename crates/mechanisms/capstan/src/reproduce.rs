@@ -97,7 +97,12 @@ fn state(design: &Design, name: &str, percent: f64) -> Option<f64> {
 fn statics(design: &Design, source: Source, input_wrap_rad: f64) -> Option<Statics> {
     let geometry = design.built.geometry().ok()?;
     let input_wrap_rad = if input_wrap_rad.is_finite() { input_wrap_rad } else { geometry.input_wrap_rad() };
-    let place = Place { input_wrap_rad, ..design.built.place(&geometry, [f64::INFINITY; 2]) };
+    let endless = vec![[f64::INFINITY; 2]; design.built.cables.len()];
+    let place = Place {
+        input_wraps_rad: [0.5 * input_wrap_rad; 2],
+        output_wraps_rad: endless,
+        ..design.built.place(&geometry, design.built.middle_rad())
+    };
     Statics::new(&design.built, &place, source).ok()
 }
 

@@ -140,6 +140,7 @@ pub(crate) struct Parts {
     pub input_bore: Slot<Quantity>,
     pub output_bore: Slot<Quantity>,
     pub anchor_hole: Slot<Quantity>,
+    pub least_wall: Slot<Quantity>,
     pub print_clearance: Slot<Quantity>,
     pub density: Slot<Quantity>,
 }
@@ -392,6 +393,8 @@ impl Describe for Parts {
         v.quantity(&size("output_bore", "Diameter of the hole through the output drum; without it it is solid."), &mut self.output_bore);
         let doc = "Diameter of the holes in which the cables are anchored; by default 1.2 times that of the cable.";
         v.quantity(&size("anchor_hole", doc), &mut self.anchor_hole);
+        let doc = "Least wall that the process leaves: of the lands between grooves. The default is our choice for turned metal; printers need about two widths of their nozzle.";
+        v.quantity(&size("least_wall", doc).default("0.2 mm"), &mut self.least_wall);
         let doc = "By how much the grooves of printed drums are cut wider on all sides.";
         v.quantity(&length("print_clearance", doc).within(0.0, 5e-3), &mut self.print_clearance);
         v.quantity(&Param::new("density", "Density of the drums.").of(Dimension::Density).above(0.0, 3e4), &mut self.density);

@@ -132,12 +132,15 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             ),
         });
     }
-    if behaviour.at_torque().is_some_and(|l| l.at_end) || behaviour.reaches_end == Some(true) {
-        all.push(Warning {
-            code: "W0702",
-            message: "slip reaches a termination: there the drive is stiffer than on a longer wrap, and the anchor feels the load"
-                .to_owned(),
-        });
+    for (reaches, place, feels) in
+        [(behaviour.reaches_end(), "a termination", "anchor"), (behaviour.reaches_pin(), "the pin on the input drum", "pin")]
+    {
+        if reaches {
+            all.push(Warning {
+                code: "W0702",
+                message: format!("slip reaches {place}: there the drive is stiffer than on a longer wrap, and the {feels} feels the load"),
+            });
+        }
     }
     let unknown = unknown(built);
     if !unknown.is_empty() {
@@ -166,7 +169,7 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
             ),
         });
     }
-    let loose = behaviour.at_torque().is_some_and(|l| l.tensions_n.iter().flatten().any(|t| *t <= 0.0));
+    let loose = measured.get("slack_tension").is_some_and(|n| n <= 0.0);
     if loose {
         let torque = behaviour.at_torque().map_or_else(String::new, |l| format_si(l.torque_nm, &design.units.torque, 4));
         all.push(Warning { code: "W0706", message: format!("under {torque} the slack side of a cable is loose") });

@@ -15,8 +15,8 @@ pub struct Place {
     pub span_m: f64,
     /// Angle of the helices, rad.
     pub helix_rad: f64,
-    /// Wrap on the input drum, rad.
-    pub input_wrap_rad: f64,
+    /// Wrap on the input drum of both sides, rad: from each span to the pin where the cables are fastened, else halves of one wrap.
+    pub input_wraps_rad: [f64; 2],
     /// Wrap of each cable's two ends on the output drum, rad.
     pub output_wraps_rad: Vec<[f64; 2]>,
 }
@@ -49,6 +49,8 @@ pub struct Loaded {
     pub slip_rad: Vec<[[f64; 2]; 2]>,
     /// Whether slip of a cable reaches a termination.
     pub at_end: bool,
+    /// Whether slip of a fastened cable reaches its pin on the input drum.
+    pub at_pin: bool,
 }
 
 /// A torque–turn loop.
@@ -72,9 +74,9 @@ impl Statics {
         let friction = built.friction * built.groove_factor * cos;
         let drum = |radius_m: f64| Drum { radius_m: radius_m / cos, friction };
         let hold = if built.fastened {
-            Hold::Fixed { wraps_rad: [0.5 * place.input_wrap_rad; 2] }
+            Hold::Fixed { wraps_rad: place.input_wraps_rad }
         } else {
-            Hold::Friction { wrap_rad: place.input_wrap_rad }
+            Hold::Friction { wrap_rad: place.input_wraps_rad.iter().sum() }
         };
         let [input_m, output_m] = built.radii_m;
         let cable = |(cable, wraps): (&crate::design::Cable, &[f64; 2])| {
@@ -143,7 +145,7 @@ impl Statics {
     }
 
     fn loaded(&self, state: &BundleState) -> Loaded {
-        let wraps = |s: &State| s.at_end.iter().any(|side| side[0]);
+        let reaches = |drum: usize| state.cables.iter().any(|s: &State| s.at_end.iter().any(|side| side[drum]));
         let secant_n_per_m = if state.displacement_m == 0.0 { state.tangent_n_per_m } else { state.force_n / state.displacement_m };
         Loaded {
             torque_nm: state.force_n * self.levers_m[1],
@@ -153,7 +155,9 @@ impl Statics {
             secant_n_per_m,
             tensions_n: state.cables.iter().map(|s| s.tensions_n).collect(),
             slip_rad: state.cables.iter().map(|s| s.slip_rad).collect(),
-            at_end: state.cables.iter().any(wraps),
+            at_end: reaches(0),
+            // Without a pin the zones of both sides meet instead.
+            at_pin: reaches(1),
         }
     }
 
@@ -175,6 +179,7 @@ impl Statics {
             tensions_n: vec![state.tensions_n; cables.len()],
             slip_rad: vec![[[taut_out, taut_in], [slack_out, slack_in]]; cables.len()],
             at_end: false,
+            at_pin: false,
         })
     }
 

@@ -3,7 +3,9 @@
 
 #[cfg(test)]
 mod brute;
+mod front;
 mod limits;
+mod rivals;
 mod section;
 mod sizing;
 mod write;
@@ -15,13 +17,15 @@ use std::sync::OnceLock;
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::maths;
 use forcewright_base::units::{format_number, format_si};
-use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser};
+use forcewright_contract::metrics::Limit;
+use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser, Watch};
 use forcewright_elements::cables;
 use forcewright_elements::grooves::{Groove, Pressure};
 use forcewright_model::{CheckState, Outcome, ParameterRow, StatusKind, StudyColumn, StudyTable};
 
 use crate::design::{Bearings, Design, Seat, Source, si};
 use crate::geometry::Belt;
+use crate::metrics::CapstanMetrics;
 use crate::spec::Spec;
 use limits::Knob;
 use sizing::{Asked, Found, Merits, Rope, Size, merits, search};
@@ -102,8 +106,49 @@ pub(crate) fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagno
         return None;
     }
     let asked = asked(spec, design, ropes)?;
+    for limit in &asked.limits {
+        refuse_unknown(spec, &asked, limit, diagnostics);
+    }
+    if diagnostics.has_errors() {
+        return None;
+    }
     let wanted = section.candidates.as_ref().map_or(CANDIDATES, |c| c.value) as usize;
     Some(Box::new(Synthesis { asked, wanted, found: OnceLock::new(), factors: OnceLock::new() }))
+}
+
+/// E0723: limits on metrics that no design of this synthesis has a value of.
+fn refuse_unknown(spec: &Spec, asked: &Asked, limit: &Limit, diagnostics: &mut Diagnostics) {
+    let built = &asked.template.built;
+    let bearings = &built.bearings;
+    let needs_bore = bearings.friction != Some(0.0);
+    let losses = [
+        ("synthesise.bearings.friction", bearings.friction.is_none()),
+        ("synthesise.bearings.input_bore", needs_bore && bearings.bores_m[0].is_none()),
+        ("synthesise.bearings.output_bore", needs_bore && bearings.bores_m[1].is_none()),
+        ("synthesise.bending_loss", asked.bending_loss.is_none()),
+    ];
+    let [input, output] = built.inertia_kg_m2.map(|i| i.is_none());
+    let inertias = [("inertia.input", input), ("inertia.output", output)];
+    let alone = asked.most_cables == 1 && asked.most_turns == 0;
+    let needs: Vec<(&str, bool)> = match limit.name::<CapstanMetrics>() {
+        "backdrive_torque_output" | "efficiency_forward" | "efficiency_backward" | "torque_input" => losses.to_vec(),
+        "torsional_frequency_free" | "reflected_inertia_output" => inertias.to_vec(),
+        "torsional_frequency" => inertias[1..].to_vec(),
+        "wire_bending_stress" => vec![("synthesise.constructions with wires", asked.ropes.iter().all(|r| r.construction.wires.is_none()))],
+        // A single wrap of a single cable has no neighbour.
+        "occupancy_clearance" => vec![("synthesise.extra_turns_max or cables_max above it", alone)],
+        _ => return,
+    };
+    let missing: Vec<&str> = needs.iter().filter(|(_, lacks)| *lacks).map(|(key, _)| *key).collect();
+    if missing.is_empty() {
+        return;
+    }
+    let name = limit.name::<CapstanMetrics>();
+    let bounds = &spec.requirements.limits.bounds;
+    let at = bounds.get(limit.metric).and_then(|b| b.present.as_ref()).map(|p| p.span).unwrap_or_default();
+    let message = format!("no design of this synthesis has a value of `{name}`: the limit can never be met");
+    let help = format!("not known: {}; give it, or take the limit out", missing.join(", "));
+    diagnostics.push(Diagnostic::error("E0723", at, message).label("this limit").help(help));
 }
 
 /// E0721: the cables that there are, of which all is known.
@@ -195,12 +240,14 @@ fn written(asked: &Asked, sizes: &[Size]) -> Vec<Proposal> {
 }
 
 impl Synthesis {
-    fn found(&self) -> &Found {
-        self.found.get_or_init(|| search(&self.asked, TRIED_PER_FILE * self.wanted))
+    fn found(&self, watch: Watch<'_>) -> &Found {
+        self.found.get_or_init(|| search(&self.asked, TRIED_PER_FILE * self.wanted, watch))
     }
 
-    fn factors(&self) -> &[(Knob, f64)] {
-        self.factors.get_or_init(|| Knob::ALL.iter().filter_map(|knob| Some((*knob, limits::factor(&self.asked, *knob)?))).collect())
+    fn factors(&self, watch: Watch<'_>) -> &[(Knob, f64)] {
+        let all = Knob::ALL.len() as f64;
+        let factor = |(i, knob): (usize, &Knob)| Some((*knob, limits::factor(&self.asked, *knob, &|part| watch((i as f64 + part) / all))?));
+        self.factors.get_or_init(|| Knob::ALL.iter().enumerate().filter_map(factor).collect())
     }
 
     /// The best design with its cables arranged otherwise.
@@ -253,8 +300,8 @@ impl Synthesiser for Synthesis {
         self.wanted
     }
 
-    fn proposals(&self) -> Vec<Proposal> {
-        written(&self.asked, &self.found().sizes)
+    fn proposals(&self, watch: Watch<'_>) -> Vec<Proposal> {
+        written(&self.asked, &self.found(watch).sizes)
     }
 
     fn judge(&self, _: &Proposal, outcome: &Outcome) -> Judgement {
@@ -275,16 +322,16 @@ impl Synthesiser for Synthesis {
         kind(a).is_some() && kind(a) == kind(b)
     }
 
-    fn relaxations(&self, slack: f64) -> Vec<Relaxation> {
-        self.factors().iter().filter_map(|(knob, factor)| limits::relaxation(&self.asked, *knob, factor * (1.0 + slack))).collect()
+    fn relaxations(&self, slack: f64, watch: Watch<'_>) -> Vec<Relaxation> {
+        self.factors(watch).iter().filter_map(|(knob, factor)| limits::relaxation(&self.asked, *knob, factor * (1.0 + slack))).collect()
     }
 
-    fn nearest(&self) -> Vec<Proposal> {
+    fn nearest(&self, watch: Watch<'_>) -> Vec<Proposal> {
         // What must be loosened least.
-        let least = self.factors().iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        let least = self.factors(watch).iter().min_by(|a, b| a.1.total_cmp(&b.1));
         let loosened = least.and_then(|(knob, factor)| limits::loosened(&self.asked, *knob, *factor));
         loosened.map_or_else(Vec::new, |other| {
-            let found = search(&other, 2);
+            let found = search(&other, 2, watch);
             // The file still asks for what it asked.
             let kept = Asked { envelope_m: self.asked.envelope_m, ..other };
             written(&kept, &found.sizes)
@@ -292,7 +339,7 @@ impl Synthesiser for Synthesis {
     }
 
     fn effort(&self) -> Option<String> {
-        let found = self.found();
+        let found = self.found.get()?;
         let cut = if found.cut { " The search was cut short: there may be better ones." } else { "" };
         Some(format!(
             "{} million combinations; what cannot be better was left out, {} loaded states and {} arrangements in space were computed.{cut}",
@@ -302,7 +349,11 @@ impl Synthesiser for Synthesis {
         ))
     }
 
-    fn tables(&self, best: &Proposal) -> Vec<StudyTable> {
-        write::read(&best.state).map(|size| vec![self.arrangements(&size)]).unwrap_or_default()
+    fn tables(&self, best: &Proposal, watch: Watch<'_>) -> Vec<StudyTable> {
+        let Some(size) = write::read(&best.state) else { return Vec::new() };
+        let rivals = merits(&self.asked, &size).map(|merits| rivals::table(&self.asked, &size.frame, &merits));
+        let known = self.found.get().map_or(&[][..], |found| &found.sizes[..]);
+        let had = front::front(&self.asked, known, watch);
+        std::iter::once(self.arrangements(&size)).chain(rivals).chain([front::table(&self.asked, &had)]).collect()
     }
 }

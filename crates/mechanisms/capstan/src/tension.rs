@@ -36,14 +36,14 @@ impl Along {
     /// Of a cable (by its index) in the middle of the travel.
     pub(crate) fn of(design: &Design, behaviour: &Behaviour, loaded: &Loaded, cable: usize) -> Option<Self> {
         let built = &design.built;
-        let place = built.place(&behaviour.geometry, built.middle_wraps_rad());
+        let place = built.place(&behaviour.geometry, built.middle_rad());
         let cos = if built.helix_correction { maths::cos(place.helix_rad) } else { 1.0 };
         let [taut_rad, slack_rad] = *place.output_wraps_rad.get(cable)?;
         Some(Self {
             preload_n: built.cables.get(cable)?.preload_left_n(built),
             spans_n: *loaded.tensions_n.get(cable)?,
             friction: built.friction * built.groove_factor * cos,
-            wraps_rad: [taut_rad, place.input_wrap_rad, slack_rad],
+            wraps_rad: [taut_rad, place.input_wraps_rad.iter().sum(), slack_rad],
             per_rad_m: [built.radii_m[1] / cos, built.radii_m[0] / cos],
             span_m: place.span_m,
             slip_rad: *loaded.slip_rad.get(cable)?,

@@ -391,8 +391,7 @@ fn losses_of_a_loaded_drive_balance() {
     // Input work less output work is what bearings and bending take, at the tensions of that state.
     let design = design(LONGVAL, &[]);
     let geometry = design.built.geometry().expect("a drive");
-    let statics =
-        Statics::new(&design.built, &design.built.place(&geometry, design.built.middle_wraps_rad()), design.source).expect("a drive");
+    let statics = Statics::new(&design.built, &design.built.place(&geometry, design.built.middle_rad()), design.source).expect("a drive");
     let losses = Losses::of(&design.built, &geometry, &statics).expect("all known");
     let forward = losses.forward(10.0).expect("held");
     let backward = losses.backward(10.0).expect("held");

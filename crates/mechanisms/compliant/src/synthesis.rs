@@ -12,7 +12,7 @@ pub(crate) use section::Synthesise;
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::maths;
 use forcewright_base::units::{Dimension, Quantity, Unit};
-use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser};
+use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Skeleton, Synthesiser, Watch};
 use forcewright_model::{CheckState, Outcome, ParameterRow, StatusKind};
 
 use crate::design::{Design, StressLimit, si};
@@ -239,7 +239,7 @@ impl Synthesiser for Synthesis {
         self.wanted
     }
 
-    fn proposals(&self) -> Vec<Proposal> {
+    fn proposals(&self, _: Watch<'_>) -> Vec<Proposal> {
         // What the closed form does not see may ask for more copies than it does.
         let [fewest, more] = [sizes, sizes_of_more].map(|of| of(&self.asked, &self.windows));
         [self.written(&fewest, self.tried()), self.written(&more, self.tried() / 2)].concat()
@@ -280,11 +280,11 @@ impl Synthesiser for Synthesis {
         a.parts == b.parts && sizes.is_some_and(|((a, _), (b, _))| near(&a, &b))
     }
 
-    fn relaxations(&self, slack: f64) -> Vec<Relaxation> {
+    fn relaxations(&self, slack: f64, _: Watch<'_>) -> Vec<Relaxation> {
         Knob::ALL.iter().filter_map(|knob| self.relaxed(*knob, slack)).map(|(relaxation, _)| relaxation).collect()
     }
 
-    fn nearest(&self) -> Vec<Proposal> {
+    fn nearest(&self, _: Watch<'_>) -> Vec<Proposal> {
         // The shorter stroke first: a design that does less of what is asked is nearer to it than one that breaks. Only what an analysis
         // tests is given up, so that the design is seen to miss it.
         let order = [Knob::Travel, Knob::Band, Knob::LessForce, Knob::MoreForce, Knob::Stress, Knob::Slope, Knob::Room];

@@ -205,10 +205,10 @@ pub(crate) fn section(design: &Design, behaviour: &Behaviour) -> Scene {
     let outer_m = ring.root_radius_m + making.ring_wall_m;
     let pitch_m = 1.1 * wire_m;
     let coil_x = |turn: f64| face_m + plate_m + (turn + 0.5) * pitch_m;
-    let bore_end = coil_x(spring.unsupported_turns + spring.bore_turns);
+    let bore_end = coil_x(spring.unsupported_turns + spring.bore_turns) - 0.5 * pitch_m;
     let off_hub = spring.unsupported_turns + spring.free_turns;
     let total = off_hub + spring.hub_turns;
-    let hub_x = [coil_x(off_hub) - pitch_m, coil_x(total) + 0.5 * wire_m];
+    let hub_x = [coil_x(off_hub) - 0.5 * pitch_m, coil_x(total) + 0.5 * wire_m];
     let shaft_m = 0.5 * making.hub_bore_m;
     let bore_outer_m = (0.5 * built.bore_m + making.ring_wall_m).max(outer_m);
     let mut items = vec![
@@ -223,7 +223,7 @@ pub(crate) fn section(design: &Design, behaviour: &Behaviour) -> Scene {
         block([face_m + 0.5 * plate_m, hub_x[1]], [0.0, shaft_m], named(Look::Bar, "carrier")),
         block(hub_x, [shaft_m, 0.5 * built.hub_m], named(Look::Plate, "hub, surface A")),
         block(
-            [coil_x(spring.unsupported_turns) - pitch_m, bore_end],
+            [coil_x(spring.unsupported_turns) - 0.5 * pitch_m, bore_end],
             [0.5 * built.bore_m, bore_outer_m],
             named(Look::Plate, "bore, surface B"),
         ),

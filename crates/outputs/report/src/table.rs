@@ -7,6 +7,9 @@ use crate::escape::escape;
 /// Tables with at most so many rows are not split between pages.
 const WHOLE: usize = 14;
 
+/// Tables with more columns than these are wider than the page.
+const WIDE: usize = 9;
+
 /// How a column is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Column {
@@ -69,13 +72,32 @@ impl Table {
 
     /// The finished table, in a box that scrolls sideways on narrow screens.
     pub(crate) fn finish(self) -> String {
-        let Self { label, head, body, class, .. } = self;
         // Short tables stay on one page of paper.
         let whole = if self.rows <= WHOLE { " whole" } else { "" };
+        let wide = if self.columns.len() > WIDE { " wide" } else { "" };
+        let Self { label, head, body, class, .. } = self;
         // The focus lets keyboards scroll.
         format!(
-            "<div class=\"scroll{whole}\" role=\"group\" tabindex=\"0\" aria-label=\"{label}\"><table class=\"{class}\">\n\
+            "<div class=\"scroll{whole}\" role=\"group\" tabindex=\"0\" aria-label=\"{label}\"><table class=\"{class}{wide}\">\n\
              {head}<tbody>\n{body}</tbody>\n</table></div>\n"
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables that are wider than the page keep their words whole, in a box that scrolls.
+    #[test]
+    fn wide_tables_are_marked() {
+        let table = |columns: usize| {
+            let columns: Vec<(&str, Column)> = (0..columns).map(|_| ("x", Column::Number)).collect();
+            Table::new("data", "caption", &columns).finish()
+        };
+        assert!(table(WIDE).contains("<table class=\"data\">") && table(WIDE).starts_with("<div class=\"scroll"));
+        assert!(table(WIDE + 1).contains("<table class=\"data wide\">"));
+        let css = include_str!("report.css");
+        assert!(css.contains(".scroll {\n  overflow-x: auto;") && css.contains(".wide {"));
     }
 }

@@ -12,6 +12,9 @@ use crate::geometry::{Drive, GeometryError, Layout};
 use crate::spec::{self, Spec};
 use crate::whole::small;
 
+/// Cables of a drive at most: their neighbours are looked at in pairs, and all lie on the one helix of the input.
+const MOST_CABLES: usize = 32;
+
 /// A cable of the drive, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cable {
@@ -55,10 +58,15 @@ impl Cable {
     }
 }
 
-/// E0703: cables that are complete, and of one diameter.
+/// E0703, E0708: cables that are complete, of one diameter, and not too many.
 pub(super) fn cables_of(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<Vec<Cable>> {
     let place = place_of(&spec.design);
     if spec.design.cables.is_empty() {
+        return None;
+    }
+    if let Some(beyond) = spec.design.cables.get(MOST_CABLES) {
+        let error = Diagnostic::error("E0708", beyond.name.span, format!("{} cables are more than a drive has", spec.design.cables.len()));
+        diagnostics.push(error.label("one too many").help(format!("at most {MOST_CABLES}; fewer and thicker ones take less room")));
         return None;
     }
     let mut all: Vec<Cable> = Vec::new();
@@ -158,11 +166,11 @@ fn fill(typed: &mut spec::Cable, name: &Located<String>, diagnostics: &mut Diagn
     let strength = listed.map(|s| &s.breaking_force_n).or(entry.strength_over_square_pa.as_ref());
     put(&mut typed.axial_stiffness, entry.axial_stiffness_n(diameter_m), entry.stiffness_over_square_pa.as_ref(), "N");
     put(&mut typed.breaking_force, entry.breaking_force_n(diameter_m), strength, "N");
-    put(&mut typed.mass, entry.mass_kg_per_m(diameter_m), listed.and_then(|s| s.mass_kg_per_m.as_ref()), "g/m");
+    let mass = listed.and_then(|s| s.mass_kg_per_m.as_ref()).or(entry.mass_over_square_kg_per_m3.as_ref());
+    put(&mut typed.mass, entry.mass_kg_per_m(diameter_m), mass, "g/m");
     put(&mut typed.min_bend_ratio, entry.least_ratio.as_ref().map(|p| p.value), entry.least_ratio.as_ref(), "");
     put(&mut typed.wire_diameter, entry.wire_m(diameter_m), None, "mm");
-    let steel = wire_material(&entry.name).and_then(materials::find);
-    let young = steel.and_then(|m| m.young_modulus_pa.as_ref());
+    let young = wire_modulus(entry);
     put(&mut typed.wire_modulus, young.map(|p| p.value), young, "GPa");
     Some(entry)
 }
@@ -176,6 +184,16 @@ fn wire_material(construction: &str) -> Option<&'static str> {
     } else {
         None
     }
+}
+
+/// Modulus of the wires of a construction.
+fn wire_modulus(entry: &Construction) -> Option<&'static Property> {
+    wire_material(&entry.name).and_then(materials::find)?.young_modulus_pa.as_ref()
+}
+
+/// Modulus of the wires of a construction, Pa; `None` where its wires are not known.
+pub(crate) fn wire_modulus_pa(entry: &Construction) -> Option<f64> {
+    Some(wire_modulus(entry)?.value)
 }
 
 /// Works behind the values that the catalogue filled in.

@@ -1,11 +1,12 @@
 //! Sections of grooves, as typed and as friction sees them.
 
-use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Severity, Span};
 use forcewright_base::maths;
+use forcewright_contract::describe::Section;
 use forcewright_elements::grooves::{Groove, Pressure};
 
 use super::{place_of, si};
-use crate::spec::Spec;
+use crate::spec::{self, Spec};
 
 /// Radius of a round seat over the diameter of a new cable (`feyrer-2015`: the endurance is largest there).
 const SEAT_RADIUS: f64 = 0.53;
@@ -94,7 +95,7 @@ pub(super) fn seat_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Seat
             }));
         }
         let needed = of.contains(&key) && !matches!(key, "radius" | "depth");
-        if needed && span.is_none() {
+        if needed && span.is_none() && !refused_in(typed, diagnostics) {
             let error = Diagnostic::error("E0702", place_of(typed), format!("a {} groove needs `{key}`", profile.value));
             diagnostics.push(error.label("in this table").help(example(key)));
         }
@@ -124,6 +125,14 @@ pub(super) fn seat_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Seat
         return None;
     }
     Some(Seat { groove, radius_m: si(&typed.radius), depth_m: si(&typed.depth) })
+}
+
+/// Whether a value was given and refused in the table, or behind its heading, or by a setting: a key that has none for that is not missing.
+fn refused_in(typed: &Section<spec::Groove>, diagnostics: &Diagnostics) -> bool {
+    let table = place_of(typed);
+    let here = |at: Span| at.source != table.source || at.start >= table.start;
+    let refused = |d: &&Diagnostic| d.severity == Severity::Error && d.code.starts_with("E02") && d.span.is_some_and(here);
+    diagnostics.in_file_order().iter().any(refused)
 }
 
 fn listed(keys: &[&str]) -> String {

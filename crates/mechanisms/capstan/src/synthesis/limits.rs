@@ -1,7 +1,9 @@
 //! Which limit blocks: for each the nearest value at which, all others as they are, something is found.
 
+use std::cell::Cell;
+
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
-use forcewright_contract::synthesis::Relaxation;
+use forcewright_contract::synthesis::{Relaxation, Watch};
 
 use super::sizing::{Asked, search};
 
@@ -19,7 +21,7 @@ pub(super) enum Knob {
 /// How far a limit is loosened at most.
 const FARTHEST: f64 = 16.0;
 /// Halvings of that, to better than a per cent.
-const HALVINGS: usize = 9;
+const HALVINGS: u32 = 9;
 
 impl Knob {
     pub(super) const ALL: [Self; 7] =
@@ -68,22 +70,36 @@ pub(super) fn loosened(asked: &Asked, knob: Knob, factor: f64) -> Option<Asked> 
     Some(other)
 }
 
-/// The least factor by which a limit must be loosened; `None` where it does not help, or nothing need be loosened.
-pub(super) fn factor(asked: &Asked, knob: Knob) -> Option<f64> {
-    let helps = |factor: f64| loosened(asked, knob, factor).is_some_and(|other| !search(&other, 1).sizes.is_empty());
+/// The least factor by which a limit must be loosened; `None` where it does not help, nothing need be loosened, or it was interrupted.
+pub(super) fn factor(asked: &Asked, knob: Knob, watch: Watch<'_>) -> Option<f64> {
+    let tried = Cell::new(0);
+    let interrupted = Cell::new(false);
+    let helps = |factor: f64| {
+        let before = f64::from(tried.replace(tried.get() + 1));
+        // Searches of one limit, nearly all of the same length.
+        let part = |part: f64| watch((before + part) / (2.0 + f64::from(HALVINGS)));
+        loosened(asked, knob, factor).is_some_and(|other| {
+            let found = search(&other, 1, &part);
+            interrupted.set(interrupted.get() || found.interrupted);
+            !found.sizes.is_empty()
+        })
+    };
     if helps(1.0) || !helps(FARTHEST) {
         return None;
     }
     let (mut low, mut high) = (1.0, FARTHEST);
     for _ in 0..HALVINGS {
         let middle: f64 = (low * high).sqrt();
+        if interrupted.get() {
+            return None;
+        }
         if helps(middle) {
             high = middle;
         } else {
             low = middle;
         }
     }
-    Some(high)
+    (!interrupted.get()).then_some(high)
 }
 
 /// A limit loosened by a factor, in words.

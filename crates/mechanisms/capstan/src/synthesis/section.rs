@@ -62,8 +62,8 @@ impl Describe for Synthesise {
         v.quantity(&angle("groove_angle", seat).above(0.0, std::f64::consts::PI), &mut self.groove_angle);
         let pitch = Param::new("pitch_ratio", "Distance of turns on the input drum over the diameter of the cable.");
         v.quantity(&pitch.within(1.0, 10.0).default("1.25"), &mut self.pitch_ratio);
-        let guard = "Wrap that stays on the output drum before each termination: slip ends before it.";
-        v.quantity(&angle("anchor_wrap", guard).within(0.0, 630.0).default("270 deg"), &mut self.anchor_wrap);
+        let guard = "Wrap that stays on the output drum before each termination: slip ends before it, so that it is above 0, as every load makes the cable slip a little.";
+        v.quantity(&angle("anchor_wrap", guard).above(0.0, 630.0).default("270 deg"), &mut self.anchor_wrap);
         let names = "Constructions of the catalogue that may be used; by default all whose stiffness, strength and least drum are known.";
         v.names(&Param::new("constructions", names), 1, 32, &mut self.constructions);
         let length = |key, doc| Param::new(key, doc).of(Dimension::Length);

@@ -6,11 +6,13 @@ use std::f64::consts::{PI, TAU};
 
 use forcewright_base::maths;
 use forcewright_contract::metrics::Limit;
+use forcewright_contract::synthesis::Watch;
 use forcewright_elements::cables::{Construction, strength_left};
 use forcewright_elements::wrap::{Drive, DriveSpec, Drum, History, Hold, State};
 
 use crate::analysis::{Behaviour, measure};
 use crate::checks::LARGEST_FLEET_RAD;
+use crate::design::cables::wire_modulus_pa;
 use crate::design::{Bearings, Built, Cable, Design, Seat};
 use crate::geometry::{self, Belt, Layout};
 use crate::losses::shaft_load_n;
@@ -90,6 +92,8 @@ pub(super) struct Found {
     pub placed: u64,
     /// Whether so many of them were placed, or analysed for further limits, that the rest was given up.
     pub cut: bool,
+    /// Whether it was interrupted.
+    pub interrupted: bool,
 }
 
 /// Arrangements that are placed in one search at most.
@@ -100,6 +104,8 @@ const MOST_MEASURED: u64 = 1_500;
 const MOST_DISTANCES: usize = 12;
 /// A limit is kept by so much, so that rounding of the numbers that are written does not matter.
 const INSIDE: f64 = 1e-6;
+/// Numbers are written in nine digits.
+const WRITTEN: f64 = 1e-8;
 /// Bounds are slackened by this part for rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -125,7 +131,7 @@ impl Asked {
                 mass_kg_per_m: None,
                 least_ratio: Some(rope.least_ratio),
                 wire_m: rope.construction.wire_m(rope.diameter_m),
-                wire_pa: None,
+                wire_pa: wire_modulus_pa(rope.construction),
                 expansion_per_k: None,
                 bending_loss: self.bending_loss,
                 lines: [first, first + frame.apart],
@@ -284,7 +290,7 @@ fn tangent_rad(asked: &Asked, frame: &Frame) -> f64 {
 }
 
 /// Length over both drums and diameter of the output with their cables, m.
-fn length_and_diameter(asked: &Asked, frame: &Frame) -> [f64; 2] {
+pub(super) fn length_and_diameter(asked: &Asked, frame: &Frame) -> [f64; 2] {
     let cable_m = asked.rope(frame).diameter_m;
     [frame.distance_m + (1.0 + asked.ratio) * frame.input_m + cable_m, 2.0 * asked.ratio * frame.input_m + cable_m]
 }
@@ -305,7 +311,7 @@ fn width_bound_m(asked: &Asked, frame: &Frame) -> f64 {
     pitch_m * (wrapped + others + input.max(output) + 2.0) * (1.0 - ROUNDING)
 }
 
-fn cost_m3(asked: &Asked, frame: &Frame, width_m: f64) -> f64 {
+pub(super) fn cost_m3(asked: &Asked, frame: &Frame, width_m: f64) -> f64 {
     let [length_m, diameter_m] = length_and_diameter(asked, frame);
     length_m * diameter_m * width_m
 }
@@ -357,8 +363,9 @@ pub(super) fn has_room(asked: &Asked, frame: &Frame) -> bool {
     let rope = asked.rope(frame);
     let [length_m, diameter_m] = length_and_diameter(asked, frame);
     2.0 * frame.input_m * (1.0 + ROUNDING) >= rope.least_ratio * rope.diameter_m
-        && diameter_m <= asked.envelope_m[0]
-        && length_m <= asked.envelope_m[2]
+        // The files written have them as limits, in nine digits.
+        && diameter_m * (1.0 + WRITTEN) <= asked.envelope_m[0]
+        && length_m * (1.0 + WRITTEN) <= asked.envelope_m[2]
         && frame.distance_m - (1.0 + asked.ratio) * frame.input_m >= rope.diameter_m
 }
 
@@ -381,14 +388,18 @@ struct Search<'a> {
     measured: u64,
     /// Designs wanted.
     most: usize,
+    watch: Watch<'a>,
+    /// Of the kinds, those looked through, and the part of the present one.
+    part: [f64; 2],
+    kinds: f64,
 }
 
 /// The smallest of each kind (cable and number of cables), as many as wanted, the smallest first.
-pub(super) fn search(asked: &Asked, most: usize) -> Found {
+pub(super) fn search(asked: &Asked, most: usize, watch: Watch<'_>) -> Found {
     let all: Vec<Vec<(i32, f64)>> = (0..=asked.most_turns).map(|turns| distances(asked, turns)).collect();
-    let mut search = Search { asked, found: Found::default(), measured: 0, most };
     let places: usize = all.iter().map(Vec::len).sum();
     let kinds = asked.ropes.len() as f64 * f64::from(asked.most_cables);
+    let mut search = Search { asked, found: Found::default(), measured: 0, most, watch, part: [0.0; 2], kinds };
     search.found.candidates = kinds * places as f64 * asked.inputs_m.len() as f64 * asked.preloads_n.len() as f64;
     for rope in 0..asked.ropes.len() {
         for cables in 1..=asked.most_cables {
@@ -398,12 +409,23 @@ pub(super) fn search(asked: &Asked, most: usize) -> Found {
                 sizes.insert(at, size);
                 sizes.truncate(most);
             }
+            if search.found.interrupted {
+                return search.found;
+            }
+            search.part[0] += 1.0;
         }
     }
     search.found
 }
 
 impl Search<'_> {
+    /// Tells where the search stands; whether it goes on.
+    fn goes_on(&mut self) -> bool {
+        let [kinds, present] = self.part;
+        self.found.interrupted = self.found.interrupted || !(self.watch)((kinds + present) / self.kinds.max(1.0));
+        !self.found.interrupted
+    }
+
     /// The smallest of a kind, if it is among those wanted.
     fn kind(&mut self, rope: usize, cables: u32, all: &[Vec<(i32, f64)>]) -> Option<Size> {
         let asked = self.asked;
@@ -413,7 +435,11 @@ impl Search<'_> {
         let least_m = 0.5 * asked.ropes[rope].least_ratio * asked.ropes[rope].diameter_m * (1.0 - 2.0 * ROUNDING);
         let from = asked.inputs_m.partition_point(|r| *r < least_m);
         for (turns, places) in (0..).zip(all) {
+            self.part[1] = f64::from(turns) / all.len() as f64;
             for (apart, per_radius) in places {
+                if !self.goes_on() {
+                    return best;
+                }
                 for input_m in &asked.inputs_m[from..] {
                     let frame = Frame { rope, cables, turns, apart: *apart, input_m: *input_m, distance_m: per_radius * input_m };
                     let [length_m, diameter_m] = length_and_diameter(asked, &frame);
@@ -443,9 +469,12 @@ impl Search<'_> {
         if prepared.stiffness_bound() < asked.stiffness_nm_per_rad || prepared.tension_bound_n() * (1.0 - ROUNDING) > prepared.most_n {
             return None;
         }
-        let [first, last] = self.preloads(&prepared)?;
+        let [first, last] = preload_range(asked, &prepared, !asked.limits.is_empty(), &mut self.found.states)?;
         if self.found.placed >= MOST_PLACED {
             self.found.cut = true;
+            return None;
+        }
+        if !self.goes_on() {
             return None;
         }
         self.found.placed += 1;
@@ -460,6 +489,9 @@ impl Search<'_> {
                 self.found.cut = true;
                 return None;
             }
+            if !self.goes_on() {
+                return None;
+            }
             self.measured += 1;
             if keeps_limits(asked, &size(*preload_n)) {
                 return Some(size(*preload_n));
@@ -467,32 +499,31 @@ impl Search<'_> {
         }
         None
     }
+}
 
-    /// First and last preload that do, by bisection: what holds with a preload holds with a larger one, what lasts with one lasts with a
-    /// smaller one.
-    fn preloads(&mut self, prepared: &Prepared) -> Option<[usize; 2]> {
-        let (asked, states) = (self.asked, &mut self.found.states);
-        let left = 1.0 - asked.preload_loss;
-        // The taut side has more than the preload.
-        let end = asked.preloads_n.partition_point(|n| n * left <= prepared.most_n);
-        let mut holds = |i: usize| {
-            *states += 1;
-            prepared.holds(asked, asked.preloads_n[i])
-        };
-        if end == 0 || !holds(end - 1) {
-            return None;
-        }
-        let first = bisected(0, end - 1, |i| !holds(i));
-        let mut lasts = |i: usize| {
-            *states += 1;
-            prepared.lasts(asked, asked.preloads_n[i])
-        };
-        if !lasts(first) {
-            return None;
-        }
-        let last = if asked.limits.is_empty() { first } else { bisected(first + 1, end, &mut lasts) - 1 };
-        Some([first, last])
+/// First and last preload that do, by bisection: what holds with a preload holds with a larger one, what lasts with one lasts with a smaller
+/// one. The last is looked for where `last` says so, else it is the first. `states` counts.
+pub(super) fn preload_range(asked: &Asked, prepared: &Prepared, last: bool, states: &mut u64) -> Option<[usize; 2]> {
+    let left = 1.0 - asked.preload_loss;
+    // The taut side has more than the preload.
+    let end = asked.preloads_n.partition_point(|n| n * left <= prepared.most_n);
+    let mut holds = |i: usize| {
+        *states += 1;
+        prepared.holds(asked, asked.preloads_n[i])
+    };
+    if end == 0 || !holds(end - 1) {
+        return None;
     }
+    let first = bisected(0, end - 1, |i| !holds(i));
+    let mut lasts = |i: usize| {
+        *states += 1;
+        prepared.lasts(asked, asked.preloads_n[i])
+    };
+    if !lasts(first) {
+        return None;
+    }
+    let last = if last { bisected(first + 1, end, &mut lasts) - 1 } else { first };
+    Some([first, last])
 }
 
 /// The first place from which on `before` is no longer so; `to` if it is so everywhere.
@@ -507,6 +538,12 @@ fn bisected(from: usize, to: usize, mut before: impl FnMut(usize) -> bool) -> us
         }
     }
     low
+}
+
+/// A drive with a bound of its width in its place, which nothing that is placed falls below.
+pub(super) fn least_size(asked: &Asked, frame: &Frame, preload_n: f64) -> Size {
+    let width_m = width_bound_m(asked, frame);
+    Size { frame: *frame, between: least_between(asked, frame), preload_n, width_m, cost_m3: cost_m3(asked, frame, width_m) }
 }
 
 /// What is compared between designs: large stiffness, else small.
@@ -544,11 +581,19 @@ pub(super) fn merits(asked: &Asked, size: &Size) -> Option<Merits> {
 }
 
 impl Merits {
+    fn pairs(&self, other: &Self) -> impl Iterator<Item = (f64, f64)> {
+        let all = |m: &Self| [-m.stiffness_nm_per_rad, m.width_m, m.inertia_m5, m.shaft_load_n];
+        all(self).into_iter().zip(all(other))
+    }
+
+    /// Whether it is at least as good in everything.
+    pub(super) fn covers(&self, other: &Self) -> bool {
+        self.pairs(other).all(|(a, b)| a <= b)
+    }
+
     /// Whether it is at least as good in everything and better in something.
     pub(super) fn dominates(&self, other: &Self) -> bool {
-        let all = |m: &Self| [-m.stiffness_nm_per_rad, m.width_m, m.inertia_m5, m.shaft_load_n];
-        let pairs = || all(self).into_iter().zip(all(other));
-        pairs().all(|(a, b)| a <= b) && pairs().any(|(a, b)| a < b)
+        self.covers(other) && self.pairs(other).any(|(a, b)| a < b)
     }
 }
 

@@ -6,7 +6,7 @@ use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_contract::synthesis::Proposal;
 use forcewright_elements::grooves::Groove;
 
-use super::sizing::{Asked, Frame, Merits, Size};
+use super::sizing::{Asked, Frame, Merits, Rope, Size};
 use crate::design::DisplayUnits;
 use crate::geometry::Belt;
 use crate::whole::{count, few, small};
@@ -20,8 +20,7 @@ pub(super) fn proposal(asked: &Asked, size: &Size, merits: &Merits, kept: bool) 
     let length = |m: f64| format_si(m, &units.length, 4);
     let frame = &size.frame;
     let rope = &asked.ropes[frame.rope];
-    let density = asked.template.making.density_kg_per_m3.unwrap_or(ALUMINIUM_KG_PER_M3);
-    let cable = format!("{} {}", rope.construction.name, millimetres(rope.diameter_m));
+    let cable = cable(rope);
     let (count, name) =
         if frame.cables == 1 { ("a cable".to_owned(), "one-cable") } else { (format!("{} cables", frame.cables), "cables") };
     Proposal {
@@ -38,13 +37,23 @@ pub(super) fn proposal(asked: &Asked, size: &Size, merits: &Merits, kept: bool) 
             ("Width", length(size.width_m)),
             ("Stiffness", format_si(merits.stiffness_nm_per_rad, &units.stiffness, 4)),
             ("Shaft load", format_si(merits.shaft_load_n, &units.force, 4)),
-            ("Drums, at the output", format!("{} kg·m²", format_number(density * merits.inertia_m5, 3))),
+            ("Drums, at the output", format!("{} kg·m²", format_number(density(asked) * merits.inertia_m5, 3))),
             ("Trade-off", if kept { "not dominated" } else { "dominated" }.to_owned()),
         ],
         state: state(size),
         cost: size.cost_m3,
         parts: 2 + frame.cables as usize,
     }
+}
+
+/// Of the drums, kg/m³.
+pub(super) fn density(asked: &Asked) -> f64 {
+    asked.template.making.density_kg_per_m3.unwrap_or(ALUMINIUM_KG_PER_M3)
+}
+
+/// Construction and diameter.
+pub(super) fn cable(rope: &Rope) -> String {
+    format!("{} {}", rope.construction.name, millimetres(rope.diameter_m))
 }
 
 /// What a design does, for the comparison of arrangements.
@@ -88,16 +97,21 @@ fn millimetres(m: f64) -> String {
     format!("{} mm", format_number(1e3 * m, 9))
 }
 
-/// The width as limits that an analysis tests; diameter and length follow from numbers of the file.
+/// The envelope as limits that an analysis tests.
 fn settings(asked: &Asked) -> Vec<String> {
-    let width_m = asked.envelope_m[1];
-    let limit = |name: &str| format!("requirements.limits.{name}.max=\"{}\"", millimetres(width_m));
+    let [diameter_m, width_m, length_m] = asked.envelope_m;
+    let sides = [
+        ("output_drum_diameter", diameter_m),
+        ("input_drum_length", width_m),
+        ("output_drum_length", width_m),
+        ("length_over_drums", length_m),
+    ];
     // A limit that the file has of its own is not replaced by a weaker one.
-    let has = |name: &str| {
-        asked.limits.iter().any(|l| l.name::<crate::metrics::CapstanMetrics>() == name && l.max.is_some_and(|max| max <= width_m))
+    let has = |name: &str, side_m: f64| {
+        asked.limits.iter().any(|l| l.name::<crate::metrics::CapstanMetrics>() == name && l.max.is_some_and(|max| max <= side_m))
     };
-    let names = ["input_drum_length", "output_drum_length"].into_iter().filter(|name| width_m.is_finite() && !has(name));
-    names.map(limit).collect()
+    let wanted = sides.into_iter().filter(|(name, side_m)| side_m.is_finite() && !has(name, *side_m));
+    wanted.map(|(name, side_m)| format!("requirements.limits.{name}.max=\"{}\"", millimetres(side_m))).collect()
 }
 
 fn sections(asked: &Asked, size: &Size) -> String {
