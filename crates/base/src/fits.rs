@@ -116,6 +116,21 @@ impl Fit {
         Ok(limits.map(|limit| f64::from(limit) / PER_METRE))
     }
 
+    /// The same position with the coarsest grade whose zone is no wider than this (m) at a diameter; `None` if the finest is wider.
+    ///
+    /// ```
+    /// use forcewright_base::fits::Fit;
+    ///
+    /// let found = Fit::parse("h7")?.coarsest(17.6e-3, 50e-6).map(|fit| fit.to_string());
+    /// // h9 is 43 µm wide, h10 is 70 µm.
+    /// assert_eq!(found.as_deref(), Some("h9"));
+    /// # Ok::<(), forcewright_base::fits::FitError>(())
+    /// ```
+    pub fn coarsest(&self, diameter_m: f64, width_m: f64) -> Option<Self> {
+        let grades = (0..GRADES.len()).rev().map(|grade| Self { grade, ..*self });
+        grades.into_iter().find(|fit| fit.deviations_m(diameter_m).is_ok_and(|[low, high]| high - low <= width_m))
+    }
+
     /// The diameters for which it is defined, m: above the first, up to and with the second. `None` if there are none.
     pub fn diameters_m(&self) -> Option<[f64; 2]> {
         let steps = [(0, SMALLEST_MM, true)].into_iter().chain(FINE_STEPS_MM.iter().enumerate().map(|(i, up_to)| (i, *up_to, false)));

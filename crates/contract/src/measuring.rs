@@ -104,7 +104,11 @@ impl<F: Measuring> Many<F> {
             }
         }
         let stations = F::stations(design);
-        let nominal = F::evaluated(design, &stations, &mut Vec::new()).ok().filter(|_| diagnostics.errors() == before)?;
+        if diagnostics.errors() > before {
+            return None;
+        }
+        // A design that cannot be computed says so when it is evaluated.
+        let nominal = F::evaluated(design, &stations, &mut Vec::new()).unwrap_or_else(|_| Values::none());
         let all = F::Metrics::ALL;
         let metrics: Vec<usize> = (0..all.len()).filter(|i| nominal.value(*i).or_else(|| F::instead(all[*i].name)).is_some()).collect();
         let mut outputs = vec![Output { name: F::CURVE.0.to_owned(), unit: F::CURVE.1, values: 0..stations.len() }];

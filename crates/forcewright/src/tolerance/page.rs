@@ -125,7 +125,9 @@ impl Toleranced {
                 Some(None) => ["none".to_owned(), "not even 0".to_owned()],
                 Some(Some(scale)) => {
                     let sign = if scale >= MOST_SCALE { "≥ " } else { "" };
-                    [format!("{sign}{}", format_number(scale, 3)), format!("{sign}±{}", format_si(scale * half, unit, 3))]
+                    let grade = self.fits.get(i).copied().flatten().and_then(|fit| fit.coarsest(variable.nominal, 2.0 * scale * half));
+                    let grade = grade.map_or_else(String::new, |fit| format!(", {fit}"));
+                    [format!("{sign}{}", format_number(scale, 3)), format!("{sign}±{}{grade}", format_si(scale * half, unit, 3))]
                 }
             };
             [variable.path.clone(), format!("±{}", format_si(half, unit, 3)), factor, width]

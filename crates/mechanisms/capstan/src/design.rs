@@ -27,6 +27,8 @@ pub struct Design {
     pub title: String,
     /// The drive as it is built.
     pub built: Built,
+    /// What diameters of drums in the file lack to the middle of the cable, m.
+    pub added_m: f64,
     /// Model of the statics.
     pub source: Source,
     /// How the drums are made.
@@ -285,6 +287,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
             clearance_m: si(&parts.print_clearance),
             density_kg_per_m3: si(&parts.density),
         },
+        added_m: if spec.design.diameters.as_ref().is_none_or(|d| d.value == "drum") { cable_m } else { 0.0 },
         built,
         source,
         requirements,

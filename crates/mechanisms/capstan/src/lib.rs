@@ -24,6 +24,7 @@ mod whole;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress};
+use forcewright_contract::measuring::{self, Many};
 use forcewright_contract::metrics::results;
 use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose, Studies};
@@ -33,6 +34,7 @@ use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
 
 use metrics::CapstanMetrics;
+use study::CableDrives;
 
 pub use analysis::{Behaviour, Measured, NoDrive, measure};
 pub use design::{Bearings, Built, Cable, Design, DisplayUnits, Making, Requirements, Seat, Source};
@@ -89,12 +91,12 @@ impl Mechanism for Capstan {
         &spec.studies
     }
 
-    fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
-        study::evaluator(spec, design, free, diagnostics)
+    fn evaluator(_: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
+        Some(Box::new(Many::<CableDrives>::new(design, free, diagnostics)?))
     }
 
     fn task(spec: &Spec, design: &Design, free: &[Free], _: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
-        study::task(spec, design, free, diagnostics)
+        measuring::task::<CableDrives>(design, &spec.studies.optimise.objective, free, diagnostics)
     }
 
     fn skeleton() -> Option<Skeleton> {
