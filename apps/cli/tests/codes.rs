@@ -155,6 +155,9 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0801", "the paper's model: a warning of the analysis"),
     ("W0802", "an analysis that depends on friction: a warning of the analysis"),
     ("W0803", "friction without a range: a warning of the analysis"),
+    ("E0830", "a measured bench: tests of the family"),
+    ("E0831", "a measured bench: tests of the family"),
+    ("W0830", "a warning of the analysis"),
     ("E0820", "a gear that cannot be drawn: tests of the family"),
 ];
 

@@ -1,7 +1,8 @@
 //! Tables of measured data beside a project: which keys name them, and how their text is read.
 //!
 //! A table is a CSV file: lines that begin with `#` are comments, the first other line names the columns with their units, `travel / mm,
-//! force / N`, and numbers with a decimal point follow. Columns are separated by commas, or by semicolons where the header has one.
+//! force / N`, and numbers with a decimal point follow. Columns are separated by commas, or by semicolons where the header has one. They
+//! stand in a fixed order ([`rows`]), or are found by names that the project gives ([`named_rows`]).
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,6 +10,7 @@ use std::sync::Arc;
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, SourceId, Span};
 use forcewright_base::units::{Dimension, Quantity, QuantityError, Unit};
 
+use crate::describe::Located;
 use crate::project::FileError;
 
 /// Whether a key names a file: `file`, or a key that ends in `_file`. No other key does, so that files are found before anything is
@@ -76,20 +78,26 @@ fn broken(span: Span, message: impl Into<String>, label: &str, help: impl Into<S
     Diagnostic::error("E0112", span, message).label(label).help(help)
 }
 
-/// Reads the columns that are wanted, in their order, and no others: a row per line, at most `most`. What is wrong is reported at its
-/// line and column; `None` after an error.
-pub fn rows<const N: usize>(file: &DataFile, columns: &[Column; N], most: usize, diagnostics: &mut Diagnostics) -> Option<Vec<[Cell; N]>> {
-    let content = file.content.as_ref().ok()?;
+/// The lines that are neither empty nor comments, with their places.
+fn lines(content: &Content) -> impl Iterator<Item = (Span, &str)> {
     let whole = Span { source: content.source, ..Span::default() };
     let mut at = 0;
-    let lines = content.text.split_inclusive('\n').map(|line| {
+    let all = content.text.split_inclusive('\n').map(move |line| {
         let start = at;
         at += line.len();
         let text = line.trim_end_matches(['\n', '\r']);
         (Span { start, end: start + text.len(), ..whole }, text)
     });
-    let mut lines = lines.filter(|(_, text)| !text.trim().is_empty() && !text.trim_start().starts_with('#'));
+    all.filter(|(_, text)| !text.trim().is_empty() && !text.trim_start().starts_with('#'))
+}
+
+/// Reads the columns that are wanted, in their order, and no others: a row per line, at most `most`. What is wrong is reported at its
+/// line and column; `None` after an error.
+pub fn rows<const N: usize>(file: &DataFile, columns: &[Column; N], most: usize, diagnostics: &mut Diagnostics) -> Option<Vec<[Cell; N]>> {
+    let content = file.content.as_ref().ok()?;
+    let mut lines = lines(content);
     let Some((place, header)) = lines.next() else {
+        let whole = Span { source: content.source, ..Span::default() };
         diagnostics.push(broken(whole, format!("`{file}` is empty"), "no header", format!("begin with {}", example(columns))));
         return None;
     };
@@ -122,6 +130,104 @@ pub fn rows<const N: usize>(file: &DataFile, columns: &[Column; N], most: usize,
         diagnostics.push(broken(place, format!("`{file}` has no rows"), "nothing below this header", "write numbers below it"));
     }
     (diagnostics.errors() == before).then_some(found)
+}
+
+/// A column that is found by its name.
+#[derive(Clone, Copy, Debug)]
+pub struct Named<'a> {
+    /// Its header with its unit, as a key of the project names it: `mass / g`. Blanks count for nothing.
+    pub header: &'a Located<String>,
+    /// The key, for messages.
+    pub key: &'static str,
+    /// Its quantity.
+    pub dimension: Dimension,
+}
+
+/// Reads columns by the names of their headers, wherever they stand, and leaves the others alone: a row per line, at most `most`, with the
+/// values in the order of `columns`. What is wrong is reported at its line and column; `None` after an error.
+pub fn named_rows<const N: usize>(
+    file: &DataFile,
+    columns: &[Named<'_>; N],
+    most: usize,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<[Cell; N]>> {
+    let content = file.content.as_ref().ok()?;
+    let mut lines = lines(content);
+    let Some((place, header)) = lines.next() else {
+        let whole = Span { source: content.source, ..Span::default() };
+        let wanted = columns.iter().map(|c| c.header.value.as_str()).collect::<Vec<_>>().join(", ");
+        diagnostics.push(broken(whole, format!("`{file}` is empty"), "no header", format!("begin with a header `{wanted}`")));
+        return None;
+    };
+    let separator = if header.contains(';') { ';' } else { ',' };
+    let names = cells(header, place, separator);
+    let before = diagnostics.errors();
+    let found: Vec<(usize, Unit)> = columns.iter().filter_map(|c| find(c, &names, place, diagnostics)).collect();
+    if diagnostics.errors() > before {
+        return None;
+    }
+    let mut all = Vec::new();
+    for (place, line) in lines {
+        if all.len() == most {
+            diagnostics.push(broken(place, format!("more than {most} rows"), "one too many", "leave out rows: every second, every tenth"));
+            return None;
+        }
+        let values = cells(line, place, separator);
+        if values.len() != names.len() {
+            let message = format!("{} values, {} are expected", values.len(), names.len());
+            let help = format!("separate the columns by `{separator}`, as in the header, and write decimal points");
+            diagnostics.push(broken(place, message, "this row", help));
+            continue;
+        }
+        let mut row = [Cell { si: 0.0, span: place }; N];
+        for (cell, (index, unit)) in row.iter_mut().zip(&found) {
+            let (span, text) = values[*index];
+            match Quantity::parse_in(text, unit) {
+                Ok(quantity) => *cell = Cell { si: quantity.si, span },
+                Err(error) => diagnostics.push(number_error(&error, text, span)),
+            }
+        }
+        all.push(row);
+    }
+    if all.is_empty() && diagnostics.errors() == before {
+        diagnostics.push(broken(place, format!("`{file}` has no rows"), "nothing below this header", "write numbers below it"));
+    }
+    (diagnostics.errors() == before).then_some(all)
+}
+
+/// The place of a column in the header, and its unit.
+fn find(column: &Named<'_>, names: &[(Span, &str)], place: Span, diagnostics: &mut Diagnostics) -> Option<(usize, Unit)> {
+    let plain = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
+    let Named { header, key, dimension } = *column;
+    let wanted = plain(&header.value);
+    let mut all = names.iter().enumerate().filter(|(_, (_, name))| plain(name) == wanted);
+    let Some((index, (_, name))) = all.next() else {
+        let others: Vec<String> = names.iter().map(|(_, name)| format!("`{name}`")).collect();
+        let message = format!("the file has no column `{}`", header.value);
+        let help = format!("its header names {}: write one of them as `{key} = \"…\"`", others.join(", "));
+        diagnostics.push(broken(header.span, message, "this column", help).related(place, "the header"));
+        return None;
+    };
+    if let Some((_, (span, _))) = all.next() {
+        let message = format!("two columns are named `{}`", header.value);
+        diagnostics.push(broken(*span, message, "named before", "give them names of their own"));
+        return None;
+    }
+    let help = format!("write `{key} = \"{} / {}\"`, and the same in the header of the file", key, unit_of(dimension));
+    let (code, message) = match name.split_once('/').map(|(_, unit)| Unit::parse(unit.trim())) {
+        None if dimension == Dimension::Ratio => return Some((index, Unit::si(dimension))),
+        None => ("E0208", format!("the column `{name}` has no unit")),
+        Some(Err(error)) => ("E0203", error.to_string()),
+        Some(Ok(unit)) if !unit.is(dimension) => ("E0201", format!("`{}` is no unit of {}", unit.symbol(), dimension.name())),
+        Some(Ok(unit)) => return Some((index, unit)),
+    };
+    diagnostics.push(Diagnostic::error(code, header.span, message).label(format!("expected {}", dimension.name())).help(help));
+    None
+}
+
+/// A unit of a quantity.
+fn unit_of(dimension: Dimension) -> &'static str {
+    dimension.example().split_once(' ').map_or("1", |(_, unit)| unit)
 }
 
 /// A header with what is wanted.

@@ -55,6 +55,7 @@ pub const EXAMPLES: &[Example] = examples![
     "lavt/butin-1",
     "lavt/butin-2",
     "lavt/butin-3",
+    "lavt/bench",
 ];
 
 macro_rules! data {
@@ -64,7 +65,8 @@ macro_rules! data {
 }
 
 /// Tables of data that examples name: file names and texts.
-const DATA: &[&[(&str, &str)]] = &[data!["compliant": "cam-5mm.csv", "cam-3mm.csv"], data!["cam": "measured-cam.csv"]];
+const DATA: &[&[(&str, &str)]] =
+    &[data!["compliant": "cam-5mm.csv", "cam-3mm.csv"], data!["cam": "measured-cam.csv"], data!["lavt": "bench.csv"]];
 
 /// An example by its name, with or without its family.
 pub fn find(name: &str) -> Option<&'static Example> {

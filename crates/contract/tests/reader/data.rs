@@ -1,8 +1,9 @@
 //! Files of data: found beside the file that names them, read as tables with places, found again from another folder.
 
-use forcewright_base::diagnostics::Diagnostics;
+use forcewright_base::diagnostics::{Diagnostics, Span};
 use forcewright_base::units::Dimension;
-use forcewright_contract::data::{Column, rows};
+use forcewright_contract::data::{Column, Named, named_rows, rows};
+use forcewright_contract::describe::Located;
 use forcewright_contract::edit::{with_base_from, with_settings};
 use forcewright_contract::schema;
 
@@ -77,6 +78,51 @@ fn every_mistake_has_its_line_and_its_column() {
         ("x / mm, F / N\n1,1\n2,1\n3,1\n4,1\n5,1\n6,1\n", &["E0112 wanted.csv:7:1 6,1"]),
     ] {
         assert_eq!(csv(text), Err(wanted.iter().map(|w| (*w).to_owned()).collect()), "{text}");
+    }
+}
+
+/// The columns `travel / mm` and `F / N` by their names, SI, or what was found wrong with its place: of the CSV, or `-` of the key.
+fn by_name(text: &str, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Vec<String>> {
+    let reading = read_files(&[("a.toml", NAMED), ("wanted.csv", text)], None, &[]);
+    let file = &reading.toy.design.measured_file.as_ref().expect("a file").value;
+    let headers = names.map(|name| Located::new(name.to_owned(), Span::default()));
+    let columns = [("travel", Dimension::Length, &headers[0]), ("force", Dimension::Force, &headers[1])]
+        .map(|(key, dimension, header)| Named { header, key, dimension });
+    let mut said = Diagnostics::default();
+    let found = named_rows(file, &columns, 3, &mut said);
+    let lines = said.in_file_order().into_iter().map(|d| {
+        let span = d.span.expect("a place");
+        assert!(d.help.as_ref().is_some_and(|h| !h.is_empty()) && !d.label.is_empty(), "{d:?}");
+        let place = reading.sources.line_column(span).filter(|_| span != Span::default());
+        place.map_or(format!("{} -", d.code), |(line, column)| format!("{} {line}:{column}", d.code))
+    });
+    let lines: Vec<String> = lines.collect();
+    assert_eq!(found.is_none(), !lines.is_empty(), "{lines:?}");
+    found.map(|rows| rows.iter().map(|row| row.map(|cell| cell.si)).collect()).ok_or(lines)
+}
+
+#[test]
+fn columns_by_their_names() {
+    let names = ["travel / mm", "F/N"];
+    let wanted = Ok(vec![[2e-3, 5.0], [4e-3, 7.5]]);
+    for text in ["travel / mm, F / N\n2, 5\n4, 7.5\n", "# bench\ntime / s; \"F / N\"; note; travel/mm\n0; 5; first; 2\n1; 7.5; ; 4\n"] {
+        assert_eq!(by_name(text, names), wanted, "{text}");
+    }
+    assert_eq!(by_name("F / N, travel / mm, a, F / kN\n5, 2, x, 1\n", ["travel / mm", "F / kN"]), Ok(vec![[2e-3, 1000.0]]));
+    for (text, names, wanted) in [
+        ("", names, &["E0112 1:1"][..]),
+        ("travel / mm, force / N\n1, 2\n", names, &["E0112 -"]),
+        ("a, b\n1, 2\n", names, &["E0112 -", "E0112 -"]),
+        ("travel / mm, F / N, F / N\n1, 2, 3\n", names, &["E0112 1:21"]),
+        ("travel / mm, F / N\n", names, &["E0112 1:1"]),
+        ("travel, F / N\n1, 2\n", ["travel", "F / N"], &["E0208 -"]),
+        ("travel / mmm, F / N\n1, 2\n", ["travel / mmm", "F / N"], &["E0203 -"]),
+        ("travel / N, F / N\n1, 2\n", ["travel / N", "F / N"], &["E0201 -"]),
+        ("travel / mm, F / N\n1, 2\n3\n", names, &["E0112 3:1"]),
+        ("travel / mm, note, F / N\n1, x, 2\n3, x, y\n", names, &["E0202 3:7"]),
+        ("travel / mm, F / N\n1,1\n2,1\n3,1\n4,1\n", names, &["E0112 5:1"]),
+    ] {
+        assert_eq!(by_name(text, names), Err(wanted.iter().map(|w| (*w).to_owned()).collect()), "{text}");
     }
 }
 

@@ -99,6 +99,9 @@ impl fmt::Display for GearError {
                 )
             }
             Self::Mates { name } => write!(f, "these gears cannot mesh: {name}"),
+            Self::CentreDistance { centre_distance_m, .. } if centre_distance_m.is_nan() => {
+                write!(f, "with these profile shifts no centre distance is without backlash; shift the profiles outwards")
+            }
             Self::CentreDistance { centre_distance_m, least_m } => {
                 write!(f, "there is no mesh at a centre distance of {centre_distance_m} m; it must be above {least_m} m")
             }

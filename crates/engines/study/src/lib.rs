@@ -5,6 +5,7 @@ pub mod evaluator;
 pub mod nlp;
 pub mod optimise;
 mod posing;
+pub mod regression;
 pub mod sampling;
 pub mod task;
 pub mod tolerance;

@@ -4,6 +4,7 @@ use std::fmt;
 
 use forcewright_elements::wrap_spring::{WrapSpring, WrapSpringError};
 
+use crate::bench;
 use crate::design::{Built, Design, Hand, Motor};
 use crate::gears::{self, Train};
 use crate::metrics::Measured;
@@ -101,6 +102,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     measure_spring(&mut m, design, behaviour);
     gears::measure(&mut m, design, &behaviour.train);
     measure_hand(&mut m, design, behaviour);
+    bench::measure(&mut m, design);
     m
 }
 

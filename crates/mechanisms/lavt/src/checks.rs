@@ -112,6 +112,8 @@ impl Context<'_> {
             "performance_index" | "energy_loss_index" => "give `[motor]`, and `hand.speed`",
             "squeeze_work" => "give `hand.object_stiffness`",
             "finger_force" => "give `[hand]`",
+            name if name.starts_with("bench_") && design.bench.is_none() => "give `[measurements.bench]`",
+            name if name.starts_with("bench_") => "the bench does not determine it: see what is said of it",
             _ if design.requirements.is_none() => "no torque is required; give `requirements.input_torque`",
             _ => "the design has no such value; see the meaning of the metric",
         };
@@ -195,8 +197,9 @@ impl Context<'_> {
         };
         let fix = if base.value.is_none() { base.missing.clone() } else { fix };
         let basis = "eq. (18): η = 1 − R τ_b/τ_in, less losses";
-        // Without a mode II the power goes into slip.
-        Some(Comparison { limit: Some(wanted), fix, basis: basis.to_owned(), broken: true, ..base }.judge())
+        // Without a mode II the power goes into slip, or nothing turns.
+        let value = base.value.or(Some(0.0));
+        Some(Comparison { value, limit: Some(wanted), fix, basis: basis.to_owned(), ..base }.judge())
     }
 
     /// LAVT005: limits on metrics.

@@ -3,12 +3,15 @@
 mod material;
 mod outside;
 
+use std::sync::Arc;
+
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::units::{Dimension, Quantity, Unit, format_number, format_si};
 use forcewright_contract::describe::{Located, Origin, Section, Slot};
 use forcewright_contract::metrics::{Limit, check_order};
 use forcewright_elements::gears::Rack;
 
+use crate::bench::{Bench, bench_of};
 use crate::spec::{self, Spec};
 
 pub use material::{GearMaterial, WireMaterial};
@@ -37,6 +40,8 @@ pub struct Design {
     pub motor: Option<Motor>,
     /// How the parts are made.
     pub making: Making,
+    /// What was measured on a bench.
+    pub bench: Option<Arc<Bench>>,
     /// Units in which people are shown results.
     pub units: DisplayUnits,
 }
@@ -250,6 +255,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
     let built = built_of(spec, &wire)?;
     check_gears(spec, &built, diagnostics);
     check_spring(spec, &built, diagnostics);
+    let bench = bench_of(spec, built.ratio(), diagnostics).map(Arc::new);
     if diagnostics.has_errors() {
         return None;
     }
@@ -263,6 +269,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         hand,
         motor,
         making: making_of(spec, &built),
+        bench,
         built,
         units: display_units(spec),
     })

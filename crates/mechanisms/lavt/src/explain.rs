@@ -146,6 +146,16 @@ pub(crate) const CODES: &[Explanation] = &[
         "A gear whose teeth cannot be drawn - pointed, without flank, below the base circle - or a bore that leaves no wall.",
     ),
     code(
+        "E0830",
+        "Run of the bench that cannot be used",
+        "The torque at the input varies within a turn, so its mean is taken over whole turns: each mass needs at least one, counted upwards, with at least four rows in each turn; a quarter of a turn between rows is the most. Masses are not negative. Leave `turn` out of `[measurements.bench]` if turns were not recorded; then the mean is that of all rows.",
+    ),
+    code(
+        "E0831",
+        "Too few masses",
+        "A line with an interval needs three masses; the shift between both modes is found with three in each.",
+    ),
+    code(
         "W0801",
         "The corrected model does not confirm it",
         "The project uses the paper's model. The corrected one - finite turns on the hub, a bore that only what exceeds τ_t presses on - finds that the design slips. Use `model.source = \"corrected\"` for a design.",
@@ -159,5 +169,10 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0803",
         "Friction without a range",
         "Friction is given as one number. Nobody knows it that well, and the design depends on it: give a range.",
+    ),
+    code(
+        "W0830",
+        "The bench shows what the model does not",
+        "The bench measured mode II at an input torque at which the model says that the spring slips, even at the upper end of the range of friction. The model takes spring, hub and bore to be coaxial and of the diameters that are typed: measure them, and look at the torque that varies once per turn. The prototypes of the paper do it too.",
     ),
 ];

@@ -19,15 +19,15 @@ const MOST_FRICTION: f64 = 0.4;
 /// How far beyond the required torque the characteristic is drawn.
 const BEYOND: f64 = 1.15;
 
-fn axis(name: &'static str, label: &str, dimension: Dimension, display: &Unit) -> Axis {
+pub(crate) fn axis(name: &'static str, label: &str, dimension: Dimension, display: &Unit) -> Axis {
     Axis { name, label: label.to_owned(), dimension, display: display.clone() }
 }
 
-fn input_axis(design: &Design) -> Axis {
+pub(crate) fn input_axis(design: &Design) -> Axis {
     axis("input_torque", "Torque at the input τ_in", Dimension::Torque, &design.units.torque)
 }
 
-fn output_axis(design: &Design) -> Axis {
+pub(crate) fn output_axis(design: &Design) -> Axis {
     axis("output_torque", "Torque at the output τ_out", Dimension::Torque, &design.units.torque)
 }
 
@@ -111,17 +111,20 @@ pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
     let statics = &behaviour.statics;
     let mut branches = vec![characteristic(design, statics, "rising")];
     branches.extend(way_back(design, statics));
-    vec![
+    let mut all = vec![
         Curve { name: "characteristic", x: input_axis(design), y: output_axis(design), branches },
         Curve { name: "efficiency", x: output_axis(design), y: efficiency_axis(), branches: efficiencies(design, statics) },
-    ]
+    ];
+    // Where nothing turns there is no efficiency.
+    all.retain(|curve| !curve.branches.is_empty());
+    all
 }
 
 fn series(branch: Branch, label: &str, stroke: Stroke) -> Series {
     Series { label: label.to_owned(), x: branch.x, y: branch.y, stroke }
 }
 
-fn plot(x: Axis, y: Axis, series: Vec<Series>) -> Plot {
+pub(crate) fn plot(x: Axis, y: Axis, series: Vec<Series>) -> Plot {
     Plot { x, y, series, bands: Vec::new(), levels: Vec::new(), spans: Vec::new(), markers: Vec::new(), from_zero: true }
 }
 

@@ -5,6 +5,7 @@
 //! `docs/theory/lavt.md`.
 
 mod analysis;
+mod bench;
 mod checks;
 mod design;
 mod explain;
@@ -12,6 +13,7 @@ mod figures;
 mod gears;
 mod metrics;
 mod parts;
+mod reproduce;
 mod scene;
 mod spec;
 mod statements;
@@ -32,6 +34,7 @@ use metrics::LavtMetrics;
 use study::Transmissions;
 
 pub use analysis::{Behaviour, NoTransmission, measure};
+pub use bench::{Bench, Friction, Known, Lines, Mode, Part, Run, Shift, Wave};
 pub use design::{
     Battery, Built, Design, DisplayUnits, GearMaterial, Gears, Hand, Lever, Loss, Making, Motor, Requirements, Scatter, Source, Spring,
     WireMaterial,
@@ -56,7 +59,8 @@ impl Mechanism for Lavt {
     }
 
     fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
-        let stated = [statements::model(design), statements::limits(design)];
+        let mut stated = [statements::model(design), statements::limits(design)];
+        stated[0].extend(bench::statements(design));
         let behaviour = match Behaviour::of(design) {
             Ok(behaviour) => behaviour,
             Err(error) => return Analysis::refused::<Self>(&design.title, error.to_string(), stated, statements::sources(design)),
@@ -71,12 +75,13 @@ impl Mechanism for Lavt {
             error_estimate: None,
             metrics: results::<LavtMetrics>(|i| measured.value(i), display),
             checks: checks::checks(design, &behaviour, &measured),
-            curves: figures::curves(design, &behaviour),
+            curves: figures::curves(design, &behaviour).into_iter().chain(bench::curves(design)).collect(),
             counters: Vec::new(),
             sources: statements::sources(design),
-            warnings: statements::warnings(design, &behaviour),
+            warnings: statements::warnings(design, &behaviour).into_iter().chain(bench::warnings(design)).collect(),
         };
-        let figures = figures::figures(design, &behaviour, &measured);
+        let mut figures = figures::figures(design, &behaviour, &measured);
+        figures.extend(bench::figure(design, &behaviour));
         let [model, limits] = stated;
         Analysis { outcome, figures, model, limits }
     }
@@ -102,6 +107,6 @@ impl Mechanism for Lavt {
     }
 
     fn reproductions() -> &'static [Reproduction] {
-        &[]
+        reproduce::ALL
     }
 }

@@ -6,6 +6,7 @@ use forcewright_contract::header::Header;
 use forcewright_contract::metrics::Limits;
 use forcewright_contract::studies::Studies;
 
+use crate::bench::section::Measurements;
 use crate::metrics::LavtMetrics;
 
 /// Everything that a project file can say.
@@ -29,6 +30,8 @@ pub struct Spec {
     pub(crate) parts: Section<Parts>,
     /// `[model]`
     pub(crate) model: Section<Model>,
+    /// `[measurements]`
+    pub(crate) measurements: Section<Measurements>,
     /// `[optimise]` and `[tolerance]`
     pub(crate) studies: Studies,
 }
@@ -275,6 +278,7 @@ impl Describe for Spec {
         self.motor.describe(v, &Param::new("motor", "The motor at the input, and what feeds it."));
         self.parts.describe(v, &Param::new("parts", "The parts that are made. Without influence on the torques."));
         self.model.describe(v, &Param::new("model", "Which equations are solved."));
+        self.measurements.describe(v, &Param::new("measurements", "What was measured, beside what is computed."));
         self.studies.describe(v);
     }
 }
@@ -416,7 +420,7 @@ impl Describe for Spring {
 
 impl Describe for Surface {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        v.quantity(&Param::new("diameter", "Diameter.").diameter().within(1e-3, 1.0).required(), &mut self.diameter);
+        v.quantity(&Param::new("diameter", "Diameter.").diameter().within(1e-3, 0.5).required(), &mut self.diameter);
     }
 }
 

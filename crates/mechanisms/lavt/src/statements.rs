@@ -79,6 +79,10 @@ pub(crate) fn sources(design: &Design) -> Vec<Citation> {
         text: "C. Butin, D. Chablat, Y. Aoustin, D. Gouaillier, J. Mechanisms Robotics 15(1), 2023",
         used_for: "architecture, both modes, clutch",
     }];
+    if design.bench.is_some() {
+        let text = "E. C. Fieller, J. Royal Statistical Society B 16(2), 1954";
+        all.push(Citation { key: "fieller1954", text, used_for: "intervals of the bench" });
+    }
     let keys = design.wire.sources.iter().chain(design.gear_material.iter().flat_map(|g| &g.sources));
     let mut seen: Vec<&'static str> = Vec::new();
     for key in keys {

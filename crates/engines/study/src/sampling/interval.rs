@@ -82,6 +82,14 @@ pub fn student(degrees: f64, confidence: Confidence) -> f64 {
     (degrees * (1.0 - x) / x).sqrt()
 }
 
+/// Fisher's quantile: `F ≤ f` has the probability of the confidence, for degrees of freedom of numerator and denominator above 0.
+///
+/// `P(F > f) = I_y(ν₂/2, ν₁/2)` with `y = ν₂ / (ν₂ + ν₁ f)` (Abramowitz & Stegun, section 26.6).
+pub fn fisher(numerator: f64, denominator: f64, confidence: Confidence) -> f64 {
+    let y = beta::quantile(0.5 * denominator, 0.5 * numerator, 1.0 - confidence.0);
+    denominator * (1.0 - y) / (numerator * y)
+}
+
 /// Interval of the probability behind `hits` of `trials` that is never too confident: C. J. Clopper and E. S. Pearson, Biometrika
 /// 26(4), 404–413, 1934, as quantiles of the beta distribution (L. D. Brown, T. T. Cai, A. `DasGupta`, "Interval estimation for a
 /// binomial proportion", Statistical Science 16(2), 101–133, 2001, section 4.2.1). No trial: [0, 1].
@@ -141,6 +149,23 @@ mod tests {
         ] {
             assert!((student(degrees, Confidence::P95) / want_95 - 1.0).abs() < 1e-12, "{degrees}");
             assert!((student(degrees, p99) / want_99 - 1.0).abs() < 1e-11, "{degrees}");
+        }
+    }
+
+    /// Tables of Abramowitz & Stegun, 26.9 (upper 5 % and 1 %); with one degree above, the square of Student's; with two below, a closed form.
+    #[test]
+    fn fisher_quantiles() {
+        let p99 = Confidence::new(0.99).unwrap();
+        for (above, below, want_95, want_99) in [(3.0, 10.0, 3.71, 6.55), (5.0, 20.0, 2.71, 4.10), (10.0, 4.0, 5.96, 14.55)] {
+            assert!((fisher(above, below, Confidence::P95) - want_95).abs() < 0.005, "{above} {below}");
+            assert!((fisher(above, below, p99) - want_99).abs() < 0.005, "{above} {below}");
+        }
+        for degrees in [1.0, 3.0, 12.0, 100.0] {
+            let t = student(degrees, p99);
+            assert!((fisher(1.0, degrees, p99) / (t * t) - 1.0).abs() < 1e-12, "{degrees}");
+            // With two degrees above: P(F > f) = (1 + 2f/ν)^(−ν/2).
+            let f = fisher(2.0, degrees, p99);
+            assert!((exp(-0.5 * degrees * ln(1.0 + 2.0 * f / degrees)) / 0.01 - 1.0).abs() < 1e-11, "{degrees}");
         }
     }
 
