@@ -5,7 +5,7 @@ use std::fmt;
 use forcewright_elements::wrap_spring::{WrapSpring, WrapSpringError};
 
 use crate::bench;
-use crate::design::{Built, Design, Hand, Motor};
+use crate::design::{Built, Design, Hand, Motor, Scatter};
 use crate::gears::{self, Train};
 use crate::metrics::Measured;
 use crate::statics::{Statics, clutch};
@@ -53,10 +53,14 @@ pub struct Behaviour {
 
 /// Corners of the tolerances of wire, spring, hub and bore.
 fn corners(design: &Design) -> impl Iterator<Item = Built> + '_ {
-    let scatter = &design.scatter;
+    corners_of(&design.built, &design.scatter)
+}
+
+/// The same of a transmission and what of it scatters.
+pub(crate) fn corners_of(designed: &Built, scatter: &Scatter) -> impl Iterator<Item = Built> {
     (0..16_usize).map(move |i| {
         let end = |bit: usize, deviations: [f64; 2]| deviations[(i >> bit) & 1];
-        let mut built = design.built;
+        let mut built = *designed;
         built.spring.wire_m += end(0, scatter.wire_m);
         built.spring.inner_m += end(1, scatter.inner_m);
         built.hub_m += end(2, scatter.hub_m);

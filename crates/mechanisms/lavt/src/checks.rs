@@ -11,7 +11,9 @@ use crate::gears::Train;
 use crate::metrics::{METRICS, Measured};
 
 /// Least contact ratio: below it teeth let go before the next ones meet, with some room for errors of making.
-const LEAST_CONTACT_RATIO: f64 = 1.1;
+pub(crate) const LEAST_CONTACT_RATIO: f64 = 1.1;
+/// Least gap between the tips of neighbouring planets, modules.
+pub(crate) const LEAST_GAP: f64 = 0.5;
 
 /// The unit in which people are shown a metric.
 pub(crate) fn display_unit(requirements: Option<&Requirements>, units: &DisplayUnits, index: usize) -> Unit {
@@ -365,7 +367,7 @@ impl Context<'_> {
     /// LAVT012: planets keep clear of each other.
     fn planets(&self) -> Check {
         let base = self.base("LAVT012", "planet_gap", "Planets keep clear of each other", "planet_gap");
-        let limit = 0.5 * self.design.built.gears.module_m;
+        let limit = LEAST_GAP * self.design.built.gears.module_m;
         let fix = "fewer planets, or smaller ones".to_owned();
         let basis = "between the tip circles of neighbours; half a module is kept";
         Comparison { limit: Some(limit), fix, basis: basis.to_owned(), ..base }.judge()

@@ -156,6 +156,32 @@ pub(crate) const CODES: &[Explanation] = &[
         "A line with an interval needs three masses; the shift between both modes is found with three in each.",
     ),
     code(
+        "E0840",
+        "A synthesis lacks a requirement",
+        "A synthesis needs `requirements.input_torque` and the friction of the spring, `synthesise.friction = \"0.15 ± 0.03\"`, with its range: designs keep to everything at both ends of it. Without a range half of what is found would slip.",
+    ),
+    code("E0841", "A range of the grid that cannot be", "A range in `[synthesise]` ends before it begins, or has more than 2000 values."),
+    code(
+        "E0842",
+        "No tolerance of a diameter",
+        "`synthesise.tolerances.hub` and `bore` are ISO fits, `\"h7\"`, or half widths, `\"0.01 mm\"`. They are written behind the diameters of the files, and their corners are kept.",
+    ),
+    code(
+        "E0843",
+        "Strength of a wire that is not known",
+        "EN 10270-1 has strengths for 0.3 mm to 20 mm, and they depend on the diameter. Leave other wires out of `synthesise.wire_diameters`, or give `material.spring.tensile_strength` for all.",
+    ),
+    code(
+        "E0844",
+        "A limit that cannot be known",
+        "A limit in `[requirements.limits]` is on a metric that no design of this file has, as motor, hand or materials are missing. Nothing could ever be found, so the synthesis does not begin.",
+    ),
+    code(
+        "E0845",
+        "The paper's model in a synthesis",
+        "With `model.source = \"paper\"` a synthesis would propose designs that slip: at a friction of 0.2 seven of ten springs that the paper's equations pass fail by the corrected ones, at 0.12 nine of ten. Leave it out; the files written may have it, to compare.",
+    ),
+    code(
         "W0801",
         "The corrected model does not confirm it",
         "The project uses the paper's model. The corrected one - finite turns on the hub, a bore that only what exceeds τ_t presses on - finds that the design slips. Use `model.source = \"corrected\"` for a design.",

@@ -19,6 +19,7 @@ mod spec;
 mod statements;
 mod statics;
 mod study;
+mod synthesis;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress};
@@ -26,6 +27,7 @@ use forcewright_contract::measuring::{self, Many};
 use forcewright_contract::metrics::results;
 use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose, Studies};
+use forcewright_contract::synthesis::{Skeleton, Synthesiser};
 use forcewright_model::{NoPart, Outcome, PartSet};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -100,6 +102,14 @@ impl Mechanism for Lavt {
 
     fn task(spec: &Spec, design: &Design, free: &[Free], _: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
         measuring::task::<Transmissions>(design, &spec.studies.optimise.objective, free, diagnostics)
+    }
+
+    fn skeleton() -> Option<Skeleton> {
+        Some(synthesis::SKELETON)
+    }
+
+    fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
+        synthesis::synthesiser(spec, design, diagnostics)
     }
 
     fn explanations() -> &'static [Explanation] {

@@ -8,6 +8,7 @@ use forcewright_contract::studies::Studies;
 
 use crate::bench::section::Measurements;
 use crate::metrics::LavtMetrics;
+use crate::synthesis::Synthesise;
 
 /// Everything that a project file can say.
 #[derive(Debug, Default)]
@@ -32,6 +33,8 @@ pub struct Spec {
     pub(crate) model: Section<Model>,
     /// `[measurements]`
     pub(crate) measurements: Section<Measurements>,
+    /// `[synthesise]`
+    pub(crate) synthesise: Section<Synthesise>,
     /// `[optimise]` and `[tolerance]`
     pub(crate) studies: Studies,
 }
@@ -279,6 +282,7 @@ impl Describe for Spec {
         self.parts.describe(v, &Param::new("parts", "The parts that are made. Without influence on the torques."));
         self.model.describe(v, &Param::new("model", "Which equations are solved."));
         self.measurements.describe(v, &Param::new("measurements", "What was measured, beside what is computed."));
+        self.synthesise.describe(v, &Param::new("synthesise", "What `forcewright synthesise` may use, and how large it may be."));
         self.studies.describe(v);
     }
 }
@@ -394,7 +398,7 @@ impl Describe for Gears {
 
 impl Describe for Shifts {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        let one = |key, doc| Param::new(key, doc).within(-2.0, 2.0).default("0");
+        let one = |key, doc| Param::new(key, doc).within(-4.0, 4.0).default("0");
         v.quantity(&one("sun", "Of the sun."), &mut self.sun);
         v.quantity(&one("planet", "Of the planets."), &mut self.planet);
         v.quantity(&one("ring", "Of the ring."), &mut self.ring);
