@@ -56,6 +56,7 @@ pub const EXAMPLES: &[Example] = examples![
     "lavt/butin-2",
     "lavt/butin-3",
     "lavt/bench",
+    "lavt/prosthetic-hand",
 ];
 
 macro_rules! data {

@@ -5,6 +5,7 @@ use std::fmt;
 use forcewright_elements::wrap_spring::{WrapSpring, WrapSpringError};
 
 use crate::bench;
+use crate::closing::{self, Ending, Grasp};
 use crate::design::{Built, Design, Hand, Motor, Scatter};
 use crate::gears::{self, Train};
 use crate::metrics::Measured;
@@ -49,6 +50,8 @@ pub struct Behaviour {
     pub slippery: [Statics; 2],
     /// The gears.
     pub train: Train,
+    /// The hand that closes; `None` where motor, hand, an inertia or the opening are not given.
+    pub grasp: Option<Grasp>,
 }
 
 /// Corners of the tolerances of wire, spring, hub and bore.
@@ -82,7 +85,8 @@ impl Behaviour {
         let statics = Statics::new(built, &clutch, built.friction, loss);
         let worst = worst_of(design, loss).unwrap_or(statics);
         let slippery = design.frictions().map(|friction| Statics::new(built, &clutch, friction, loss));
-        Ok(Self { clutch, statics, worst, slippery, train })
+        let grasp = closing::grasp(design, &statics, &clutch);
+        Ok(Self { clutch, statics, worst, slippery, train, grasp })
     }
 }
 
@@ -107,6 +111,7 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     gears::measure(&mut m, design, &behaviour.train);
     measure_hand(&mut m, design, behaviour);
     bench::measure(&mut m, design);
+    measure_closing(&mut m, design, behaviour);
     m
 }
 
@@ -212,4 +217,30 @@ fn measure_hand(m: &mut Measured, design: &Design, behaviour: &Behaviour) {
     let power_w = held.then_some(motor.resistance_ohm * current_a * current_a);
     m.set("stall_power", power_w);
     m.set("energy_loss_index", power_w.zip(index_w).map(|(p, i)| p / i));
+}
+
+/// The hand that closes.
+fn measure_closing(m: &mut Measured, design: &Design, behaviour: &Behaviour) {
+    let (Some(motor), Some(hand), Some(grasp)) = (&design.motor, &design.hand, &behaviour.grasp) else { return };
+    m.set("closing_time", grasp.touch_s);
+    if !grasp.is_finished() {
+        return;
+    }
+    m.set("peak_current", grasp.peak_a());
+    let Some(force_n) = grasp.force_n() else { return };
+    m.set("grasp_force", force_n);
+    m.set("grasp_time", grasp.grasp_s());
+    let Some(energy_j) = grasp.energy_j() else { return };
+    m.set("energy_per_grasp", energy_j);
+    m.set("grasps_per_charge", motor.battery.filter(|_| energy_j > 0.0).map(|b| b.energy_j() / energy_j));
+    // A motor that was switched off at the force must hold it again; one that stands holds it already.
+    let held_a = match grasp.ending {
+        _ if hand.non_backdrivable => Some(0.0),
+        Ending::Stalled => grasp.last().map(|l| l.current_a),
+        _ => {
+            let needed_nm = behaviour.statics.plateau_end_nm(force_n / finger_force_n(hand, 1.0));
+            Some(stall_current_a(motor, needed_nm))
+        }
+    };
+    m.set("holding_power", held_a.map(|a| motor.resistance_ohm * a * a));
 }

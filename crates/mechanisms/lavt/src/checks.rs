@@ -6,6 +6,7 @@ use forcewright_contract::judge::Comparison;
 use forcewright_model::{Check, Sense};
 
 use crate::analysis::{Behaviour, PERMISSIBLE};
+use crate::closing::Ending;
 use crate::design::{Design, DisplayUnits, Requirements, Source};
 use crate::gears::Train;
 use crate::metrics::{METRICS, Measured};
@@ -100,18 +101,12 @@ impl Context<'_> {
             }
             "spring_safety_factor" => "give `material.spring.use` or `tensile_strength`",
             "tooth_bending_stress" | "flank_pressure" => "give `material.gears`",
-            "closing_time" | "grasp_time" | "grasp_force" | "energy_per_grasp" | "peak_current" | "grasps_per_charge" => {
-                if design.motor.is_none() || design.hand.is_none() {
-                    "give `[motor]` and `[hand]`"
-                } else if design.motor.as_ref().is_some_and(|m| m.inertia_kg_m2.is_none()) {
-                    "give `motor.inertia`"
-                } else if metric == "grasps_per_charge" && design.motor.as_ref().is_some_and(|m| m.battery.is_none()) {
-                    "give `motor.battery`"
-                } else {
-                    "give `hand.inertia`, `hand.opening` and `hand.object_stiffness`; or the hand does not reach the object"
-                }
+            "closing_time" | "grasp_time" | "grasp_force" | "energy_per_grasp" | "peak_current" | "grasps_per_charge" | "holding_power" => {
+                self.missing_closing(metric)
             }
-            "performance_index" | "energy_loss_index" => "give `[motor]`, and `hand.speed`",
+            "performance_index" => "give `hand.speed`",
+            "energy_loss_index" => "give `[motor]`, and `hand.speed`; or there is no mode II with the required torque",
+            "stall_power" => "give `[motor]`; or there is no mode II with the required torque",
             "squeeze_work" => "give `hand.object_stiffness`",
             "finger_force" => "give `[hand]`",
             name if name.starts_with("bench_") && design.bench.is_none() => "give `[measurements.bench]`",
@@ -120,6 +115,24 @@ impl Context<'_> {
             _ => "the design has no such value; see the meaning of the metric",
         };
         text.to_owned()
+    }
+
+    /// Why there is no closing, or not that of it.
+    fn missing_closing(&self, metric: &str) -> &'static str {
+        let Design { motor, hand, .. } = self.design;
+        let (Some(motor), Some(hand)) = (motor, hand) else { return "give `[motor]` and `[hand]`" };
+        let Some(grasp) = &self.behaviour.grasp else {
+            return if motor.inertia_kg_m2.is_none() { "give `motor.inertia`" } else { "give `hand.inertia` and `hand.opening`" };
+        };
+        match grasp.ending {
+            Ending::Touched => "give `hand.object_stiffness`",
+            Ending::Unfinished => "the closing did not end within its time: see the figures",
+            _ if grasp.touch_s.is_none() => "the hand does not reach the object: glove or friction take more than mode I gives",
+            Ending::Slips => "the clutch slips and the motor runs on: there is no end of its work",
+            _ if metric == "grasps_per_charge" && motor.battery.is_none() => "give `motor.battery`",
+            _ if hand.object_n_per_m.is_none() => "give `hand.object_stiffness`",
+            _ => "the force rose at once: there is no 95 % of it on the way",
+        }
     }
 
     fn torque(&self, nm: f64) -> String {

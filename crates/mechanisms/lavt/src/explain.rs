@@ -201,4 +201,24 @@ pub(crate) const CODES: &[Explanation] = &[
         "The bench shows what the model does not",
         "The bench measured mode II at an input torque at which the model says that the spring slips, even at the upper end of the range of friction. The model takes spring, hub and bore to be coaxial and of the diameters that are typed: measure them, and look at the torque that varies once per turn. The prototypes of the paper do it too.",
     ),
+    code(
+        "W0811",
+        "Shifts before it touches",
+        "On its way to the object the hand already needs more than mode I carries: the finger's inertia when the voltage jumps, its swing on the soft coil, glove or friction. The rest of the way is five times slower. A ramp of the voltage, a lighter finger or a later transition avoids it.",
+    ),
+    code(
+        "W0812",
+        "Does not reach the object",
+        "Motor and finger come to rest before the object is touched: glove and friction take more than the transmission gives, or the clutch slips.",
+    ),
+    code(
+        "W0813",
+        "Closing not finished",
+        "The simulated closing did not come to rest within 30 s after the last change of the voltage, or what sticks and slips changed more than 2000 times: without damping, a slow drive pulls a finger in steps. Metrics of the grasp are then missing rather than guessed.",
+    ),
+    code(
+        "W0814",
+        "Weaker than wanted",
+        "The motor stalls, or the clutch slips, below `hand.force` (or the force of the required output torque): the voltage over the resistance or the limit of the current is too small, or losses take the rest.",
+    ),
 ];

@@ -7,6 +7,7 @@
 mod analysis;
 mod bench;
 mod checks;
+mod closing;
 mod design;
 mod explain;
 mod figures;
@@ -28,15 +29,17 @@ use forcewright_contract::metrics::results;
 use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose, Studies};
 use forcewright_contract::synthesis::{Skeleton, Synthesiser};
-use forcewright_model::{NoPart, Outcome, PartSet};
+use forcewright_model::{Counter, NoPart, Outcome, PartSet};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
 
+use closing::figures::Closings;
 use metrics::LavtMetrics;
 use study::Transmissions;
 
 pub use analysis::{Behaviour, NoTransmission, measure};
 pub use bench::{Bench, Friction, Known, Lines, Mode, Part, Run, Shift, Wave};
+pub use closing::{ClosingSettings, Ending, Energies, Grasp, Instant, OneSpeed, Phase, grasp, grasp_one_speed, grasp_with};
 pub use design::{
     Battery, Built, Design, DisplayUnits, GearMaterial, Gears, Hand, Lever, Loss, Making, Motor, Requirements, Scatter, Source, Spring,
     WireMaterial,
@@ -69,6 +72,7 @@ impl Mechanism for Lavt {
         };
         progress(1.0);
         let measured = measure(design, &behaviour);
+        let closings = Closings::of(design, &behaviour);
         let display = |i: usize| checks::display_unit(design.requirements.as_ref(), &design.units, i);
         let outcome = Outcome {
             mechanism: Self::ID,
@@ -77,13 +81,17 @@ impl Mechanism for Lavt {
             error_estimate: None,
             metrics: results::<LavtMetrics>(|i| measured.value(i), display),
             checks: checks::checks(design, &behaviour, &measured),
-            curves: figures::curves(design, &behaviour).into_iter().chain(bench::curves(design)).collect(),
-            counters: Vec::new(),
+            curves: (figures::curves(design, &behaviour).into_iter())
+                .chain(bench::curves(design))
+                .chain(closings.iter().flat_map(Closings::curves))
+                .collect(),
+            counters: behaviour.grasp.iter().map(|g| Counter { name: "closing_evaluations", count: g.evaluations }).collect(),
             sources: statements::sources(design),
             warnings: statements::warnings(design, &behaviour).into_iter().chain(bench::warnings(design)).collect(),
         };
         let mut figures = figures::figures(design, &behaviour, &measured);
         figures.extend(bench::figure(design, &behaviour));
+        figures.extend(closings.iter().flat_map(Closings::figures));
         let [model, limits] = stated;
         Analysis { outcome, figures, model, limits }
     }

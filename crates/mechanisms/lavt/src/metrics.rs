@@ -163,7 +163,8 @@ pub const METRICS: &[MetricInfo] = &[
     metric("closing_time", D::Time, true, "From rest to the first touch of the object."),
     metric("grasp_time", D::Time, true, "From rest to 95 % of the force that is reached in the end."),
     metric("grasp_force", D::Force, false, "Force on the object in the end."),
-    metric("energy_per_grasp", D::Energy, true, "Electric energy from rest to the grasp."),
+    metric("energy_per_grasp", D::Energy, true, "Electric energy from rest to the wanted force, or to 95 % of that of a stall."),
     metric("grasps_per_charge", D::Ratio, true, "Energy of the battery over that of a grasp."),
     metric("peak_current", D::Current, true, "Largest current of the motor on the way."),
+    metric("holding_power", D::Power, false, "Electric power that keeps the grasp; none where the finger's reduction holds it alone."),
 ];

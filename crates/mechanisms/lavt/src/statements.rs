@@ -4,6 +4,7 @@ use forcewright_base::units::{format_number, format_si};
 use forcewright_model::{Citation, Statement, Status, StatusKind, Warning};
 
 use crate::analysis::Behaviour;
+use crate::closing::{Ending, target_n};
 use crate::design::{Design, Source};
 use crate::statics::{State, Statics, clutch};
 
@@ -34,7 +35,7 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
             "As Butin et al. have it: moments EI δ/r², slip on the hub without the factor of finite turns, and a bore that the whole of τ_b presses on. Designs that this calls sound may slip before they shift."
         }
     };
-    vec![
+    let mut all = vec![
         statement("Clutch", clutch),
         statement(
             "Gears",
@@ -44,7 +45,14 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
             "Losses",
             "Slip on the hub in mode II; besides it what `[losses]` gives, at the output, or the friction between flanks. Nothing else is lost.",
         ),
-    ]
+    ];
+    if design.motor.is_some() && design.hand.is_some() {
+        all.push(statement(
+            "Closing",
+            "Sun and carrier turn by the motor (R, K, its friction and inertia, the limit of its current) and by the finger (inertia, glove, object); between them the coil winds as a spring, sticks and slips on the hub, and drags, grips and lets go in the bore with the friction that its pressure allows. Changes are located, not smoothed. Inductance, the ring's mass and damping in the coil are left out.",
+        ));
+    }
+    all
 }
 
 /// What is not modelled.
@@ -97,7 +105,7 @@ pub(crate) fn sources(design: &Design) -> Vec<Citation> {
 /// Things to know about a result.
 pub(crate) fn warnings(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
     let mut all = Vec::new();
-    let Some(required) = &design.requirements else { return all };
+    let Some(required) = &design.requirements else { return closing(design, behaviour) };
     let torque = |nm: f64| format_si(nm, &design.units.torque, 4);
     // The paper's model and the corrected one do not agree on what happens.
     if let Ok(spring) = clutch(&design.built, Source::Corrected)
@@ -125,9 +133,43 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
             ),
         });
     }
+    all.extend(closing(design, behaviour));
     if !design.friction_scatters() {
         let message = "friction is given without a range; nobody knows it that well: write `\"0.12 ± 0.03\"`".to_owned();
         all.push(Warning { code: "W0803", message });
+    }
+    all
+}
+
+/// What the closing of the hand shows.
+fn closing(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
+    let mut all = Vec::new();
+    let Some(grasp) = &behaviour.grasp else { return all };
+    let force = |n: f64| format_si(n, &design.units.force, 4);
+    let seconds = |s: f64| format_number(s, 3);
+    match (grasp.touch_s, grasp.shift_s) {
+        (Some(touch_s), Some(shift_s)) if shift_s < touch_s => all.push(Warning {
+            code: "W0811",
+            message: format!(
+                "it shifts after {} s and touches the object after {} s: the rest of the way is slow",
+                seconds(shift_s),
+                seconds(touch_s)
+            ),
+        }),
+        (None, _) => all.push(Warning { code: "W0812", message: "the hand does not reach the object".to_owned() }),
+        _ => {}
+    }
+    if grasp.ending == Ending::Unfinished {
+        let end_s = grasp.last().map_or(0.0, |l| l.time_s);
+        all.push(Warning {
+            code: "W0813",
+            message: format!("the closing was given up after {} s: its metrics are missing", seconds(end_s)),
+        });
+    }
+    let wanted_n = target_n(design);
+    if let Some(force_n) = grasp.force_n().filter(|_| wanted_n.is_finite() && grasp.ending != Ending::Reached) {
+        let verb = if grasp.ending == Ending::Slips { "slips" } else { "stalls" };
+        all.push(Warning { code: "W0814", message: format!("the hand {verb} at {}; wanted are {}", force(force_n), force(wanted_n)) });
     }
     all
 }

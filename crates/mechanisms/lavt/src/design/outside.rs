@@ -112,6 +112,15 @@ impl Motor {
         interpolated(&self.supply, time_s)
     }
 
+    /// Rate of the voltage right after a time (s), V/s.
+    pub fn supply_slope(&self, time_s: f64) -> f64 {
+        let after = self.supply.partition_point(|p| p[0] <= time_s);
+        match (after.checked_sub(1).and_then(|i| self.supply.get(i)), self.supply.get(after)) {
+            (Some(a), Some(b)) => (b[1] - a[1]) / (b[0] - a[0]),
+            _ => 0.0,
+        }
+    }
+
     /// Voltage in the end, V.
     pub fn final_v(&self) -> f64 {
         self.supply.last().map_or(0.0, |p| p[1])
