@@ -12,6 +12,8 @@ use super::section::{Counts, Lengths, Numbers, Synthesise};
 use crate::design::{Built, Design, Scatter, Spring, place_of, si};
 use crate::spec::Spec;
 
+/// ± of the inner diameter of the spring where nothing is said, m.
+const SPRING_HALF_M: f64 = 0.05e-3;
 /// Wires of the default grid, from and to, m.
 const WIRES_M: [f64; 2] = [0.6e-3, 1.4e-3];
 /// δa − δb of the default grid, m.
@@ -215,7 +217,7 @@ pub(super) fn asked(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics)
         free_turns: si(&section.free_turns).unwrap_or(6.0),
         friction: [friction.value.si, bore_friction.value.si],
         friction_half: [half(&friction.value), half(&bore_friction.value)],
-        spring_half_m: si(&section.tolerances.spring).unwrap_or(0.0),
+        spring_half_m: si(&section.tolerances.spring).unwrap_or(SPRING_HALF_M),
         hub_made: made(&section.tolerances.hub, diagnostics)?,
         bore_made: made(&section.tolerances.bore, diagnostics)?,
         ring_wall_m: si(&spec.parts.ring_wall),

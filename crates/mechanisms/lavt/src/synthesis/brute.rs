@@ -287,7 +287,7 @@ fn files_are_what_was_found() {
             let outcome = <crate::Lavt as forcewright_contract::family::Mechanism>::analyse(&design, &mut |_| true).outcome;
             let missed: Vec<_> =
                 outcome.checks.iter().filter(|c| c.state == forcewright_model::CheckState::Missed).map(|c| c.code).collect();
-            assert!(outcome.requirements_met() && missed.iter().all(|c| *c == "LAVT009"), "{missed:?}\n{sections}");
+            assert!(outcome.requirements_met() && missed.iter().all(|c| super::MAY_MISS.contains(c)), "{missed:?}\n{sections}");
             let there = found.front.iter().any(|p| {
                 let ours = designed(&asked, &found.sets[p.set as usize], p.place);
                 ours.built == design.built && ours.scatter == design.scatter && ours.making == design.making
@@ -327,7 +327,7 @@ fn seven_of_ten_springs_that_the_paper_passes_slip() {
     let [mut paper, mut both] = [0_u32; 2];
     for place in places(&asked).into_iter().filter(|p| p[5] == 0) {
         let built = Built { gears: teeth, ..asked.spring(place) };
-        let [one, other] = [Source::Paper, Source::Corrected].map(|source| clutch(&built, source).expect("a spring"));
+        let one = clutch(&built, Source::Paper).expect("a spring");
         let lasts = |spring: &WrapSpring| spring.stresses().hub_pa.max(spring.stresses().bore_pa) <= 1.4e9;
         if !lasts(&one) {
             continue;
@@ -336,6 +336,7 @@ fn seven_of_ten_springs_that_the_paper_passes_slip() {
             let mut built = built;
             built.spring.bore_turns = *turns;
             built.spring.free_turns = asked.free_turns + *turns;
+            let [one, other] = [Source::Paper, Source::Corrected].map(|source| clutch(&built, source).expect("a spring"));
             let does = |s: &Statics| {
                 let (state, output_nm) = s.output(0.1);
                 // Configuration 1 has no blocked interval: the paper's mode II begins where mode I ends.

@@ -153,8 +153,8 @@ impl Describe for Tolerances {
     fn describe(&mut self, v: &mut dyn Visitor) {
         let half = |key, doc| length(key, doc).within(0.0, 0.01);
         v.quantity(&half("wire", "± of the wire; by default that of EN 10270-1."), &mut self.wire);
-        let doc = "± of the inner diameter of the free spring. A coil as it comes off the machine has several times as much: sort it, or grind it.";
-        v.quantity(&half("spring", doc).default("0.05 mm"), &mut self.spring);
+        let doc = "± of the inner diameter of the free spring; by default 0.05 mm. A coil as it comes off the machine has several times as much: sort it, or grind it.";
+        v.quantity(&half("spring", doc), &mut self.spring);
         v.text(&Param::new("hub", "Of the hub: an ISO fit, or ± as `\"0.01 mm\"`.").default("h7"), &mut self.hub);
         v.text(&Param::new("bore", "Of the bore: an ISO fit, or ± as `\"0.01 mm\"`.").default("H7"), &mut self.bore);
     }
