@@ -1,7 +1,7 @@
 """Reads the files of sample parts with tools that know nothing of this project.
 
 Usage: parts.py JOB.json, with {"folder", "without_packages": reason or null}; the folder holds
-samples.json, drums.json, and a file per format.
+samples.json, drums.json, springs.json, and a file per format.
 """
 
 import cmath
@@ -246,6 +246,67 @@ def check_drum_svg(drum, folder):
     fail_on(found)
 
 
+def check_spring_mesh(spring, folder, extension, reason):
+    if reason:
+        raise NotRun(reason)
+    import numpy
+
+    found = Findings()
+    mesh = loaded_mesh(spring, folder, extension, found)
+    found.need(mesh.euler_number == 2, f"Euler number {mesh.euler_number}")
+    for name, bound in zip(("low_mm", "high_mm"), mesh.bounds):
+        off = float(abs(bound - numpy.array(spring[name])).max())
+        found.need(off <= spring["facet_error_mm"] + 1e-5, f"{name}: {bound} for {spring[name]}")
+    # Facets lie within the chord error, most of them inside; corners are rounded to single precision.
+    error = float(mesh.volume) - spring["volume_mm3"]
+    allowed = (spring["facet_error_mm"] + 1e-5) * spring["surface_mm2"]
+    found.need(-allowed < error < 1e-5 * spring["surface_mm2"], f"volume {mesh.volume} for {spring['volume_mm3']}")
+    fail_on(found)
+
+
+def check_spring_dxf(spring, folder, reason):
+    if reason:
+        raise NotRun(reason)
+    import ezdxf
+
+    document = ezdxf.readfile(folder / f"{spring['name']}.dxf")
+    found = Findings()
+    audit = document.audit()
+    found += [f"audit: {entry.message}" for entry in [*audit.errors, *audit.fixes]]
+    layers = ("OUTLINE", "END", "CENTRE", "NOTES")
+    on = {layer: [e for e in document.modelspace() if e.dxf.layer == layer] for layer in layers}
+    found.need(sum(map(len, on.values())) == len(document.modelspace()), "entities on other layers")
+    found.need(all(layer in document.layers for layer in layers), "a layer is missing")
+    found.need({e.dxftype() for e in on["OUTLINE"]} == {"LWPOLYLINE"}, "no lines of the side view")
+    found.need(not any(e.closed for e in on["OUTLINE"]), "a closed line in the side view")
+    diameters = [2 * e.dxf.radius for e in on["END"]]
+    wanted = [spring["outer_mm"], spring["inner_mm"]]
+    found.need(all(abs(a - b) < 1e-9 for a, b in zip(diameters, wanted)) and len(diameters) == 2, f"diameters {diameters}")
+    corners = [point for e in on["OUTLINE"] for point in e.get_points("xy")]
+    # The side view: z to the right, x upwards.
+    for axis, of in ((0, 2), (1, 0)):
+        low, high = min(c[axis] for c in corners), max(c[axis] for c in corners)
+        found.near("least coordinate", low, spring["low_mm"][of], 2.1 * spring["arc_error_mm"])
+        found.near("greatest coordinate", high, spring["high_mm"][of], 2.1 * spring["arc_error_mm"])
+    fail_on(found)
+
+
+def check_spring_svg(spring, folder):
+    root = xml.etree.ElementTree.parse(folder / f"{spring['name']}.svg").getroot()
+    groups = {group.get("id"): group for group in root.iter(SVG + "g")}
+    found = Findings()
+    radii = [float(circle.get("r")) for circle in groups["end"]]
+    wanted = [spring["outer_mm"], spring["inner_mm"]]
+    found.need(len(radii) == 2 and all(abs(2 * r - d) < 1e-9 for r, d in zip(radii, wanted)), f"radii {radii}")
+    numbers = [pair.split() for path in groups["outline"] for pair in path.get("d")[1:].split("L")]
+    across = [-float(y) for _, y in numbers]
+    along = [float(x) for x, _ in numbers]
+    for name, values, of in (("along", along, 2), ("across", across, 0)):
+        found.near(f"least {name}", min(values), spring["low_mm"][of], 2.1 * spring["arc_error_mm"])
+        found.near(f"greatest {name}", max(values), spring["high_mm"][of], 2.1 * spring["arc_error_mm"])
+    fail_on(found)
+
+
 def check_package(sample, folder):
     with zipfile.ZipFile(folder / f"{sample['name']}.3mf") as package:
         found = Findings()
@@ -278,6 +339,13 @@ def main():
         for extension in ("stl", "3mf"):
             check(f"{name}.{extension} by trimesh", lambda: check_drum_mesh(drum, folder, extension, reason))
         check(f"{name}.3mf as a package", lambda: check_package(drum, folder))
+    for spring in json.loads((folder / "springs.json").read_text("utf-8")):
+        name = spring["name"]
+        check(f"{name}.svg", lambda: check_spring_svg(spring, folder))
+        check(f"{name}.dxf by ezdxf", lambda: check_spring_dxf(spring, folder, reason))
+        for extension in ("stl", "3mf"):
+            check(f"{name}.{extension} by trimesh", lambda: check_spring_mesh(spring, folder, extension, reason))
+        check(f"{name}.3mf as a package", lambda: check_package(spring, folder))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Reads STEP files with OpenCASCADE: those of sample parts, and those that `export` writes for projects.
 
 Usage: solids.py JOB.json, with {"folder", "binary", "root", "projects"}; the folder holds samples.json,
-drums.json and the files.
+drums.json, springs.json and the files.
 """
 
 import json
@@ -12,7 +12,7 @@ import sys
 from checks import Failed, check, fail_on
 
 
-# What STEP files of turned parts may be off from their helices, mm.
+# What STEP files of turned parts and springs may be off from their helices, mm.
 SPLINE_ERROR = 1e-7
 
 
@@ -80,8 +80,9 @@ def check_project(project, job):
         raise Failed(f"{len(files)} files for {len(parts)} parts")
     for part in parts:
         path = out / (f"{name}-{part['name']}.step" if len(parts) > 1 else f"{name}.step")
-        # Grooves are splines near helices.
-        check_solid(path, 1e9 * part["volume"]["value"], surface_error_mm=SPLINE_ERROR if "sections" in part else 0.0)
+        # Grooves and wires are splines near helices.
+        is_helical = "sections" in part or "windings" in part
+        check_solid(path, 1e9 * part["volume"]["value"], surface_error_mm=SPLINE_ERROR if is_helical else 0.0)
 
 
 def main():
@@ -94,6 +95,9 @@ def main():
     for drum in json.loads((folder / "drums.json").read_text("utf-8")):
         path = folder / f"{drum['name']}.step"
         check(f"{path.name} by OpenCASCADE", lambda: check_solid(path, drum["volume_mm3"], drum["faces"], SPLINE_ERROR))
+    for spring in json.loads((folder / "springs.json").read_text("utf-8")):
+        path = folder / f"{spring['name']}.step"
+        check(f"{path.name} by OpenCASCADE", lambda: check_solid(path, spring["volume_mm3"], spring["faces"], SPLINE_ERROR))
     for project in job["projects"]:
         check(f"parts of {project} by OpenCASCADE", lambda: check_project(project, job))
 

@@ -4,7 +4,7 @@ mod page;
 
 use forcewright_base::diagnostics::Explanation;
 use forcewright_fabricate::{Error, Format, Options, Problem, write};
-use forcewright_model::{Body, CheckState, NoPart, Part, PartSet, Plate, Section, Turned};
+use forcewright_model::{Body, CheckState, Coil, CoilEnd, NoPart, Part, PartSet, Plate, Section, Turned};
 use forcewright_report::json;
 use serde_json::{Value, json};
 
@@ -104,6 +104,7 @@ fn part(part: &Part) -> Value {
     match &part.body {
         Body::Plate(body) => plate(part, body),
         Body::Turned(body) => turned(part, body),
+        Body::Coil(body) => coil(part, body),
     }
 }
 
@@ -154,6 +155,34 @@ fn turned(part: &Part, turned: &Turned) -> Value {
         "bore": quantity(turned.bore_diameter_m, "m"),
         "sections": turned.sections.iter().map(section).collect::<Vec<_>>(),
         "drillings": drillings.collect::<Vec<_>>(),
+        "mass": part.mass_kg().map(|kg| quantity(kg, "kg")),
+        "volume": quantity(part.volume_m3(), "m^3"),
+        "notes": part.notes,
+    })
+}
+
+fn coil(part: &Part, coil: &Coil) -> Value {
+    let end = |end: &CoilEnd| {
+        json!({
+            "kind": end.words(),
+            "bend_radius": end.bend_m().map(|m| quantity(m, "m")),
+            "leg": quantity(end.leg_m(), "m"),
+        })
+    };
+    let windings =
+        coil.windings.iter().map(|winding| json!({ "turns": winding.turns, "pitch": winding.pitch_m.map(|m| quantity(m, "m")) }));
+    json!({
+        "name": part.name,
+        "material": part.material,
+        "wire": quantity(coil.wire_m, "m"),
+        "outer_diameter": quantity(coil.outer_diameter_m(), "m"),
+        "inner_diameter": quantity(coil.inner_diameter_m(), "m"),
+        "length": quantity(coil.length_m(), "m"),
+        "wire_length": quantity(coil.wire_length_m(), "m"),
+        "hand": if coil.is_right_handed { "right" } else { "left" },
+        "start": quantity(coil.start_rad, "rad"),
+        "windings": windings.collect::<Vec<_>>(),
+        "ends": coil.ends.iter().map(end).collect::<Vec<_>>(),
         "mass": part.mass_kg().map(|kg| quantity(kg, "kg")),
         "volume": quantity(part.volume_m3(), "m^3"),
         "notes": part.notes,

@@ -283,3 +283,34 @@ fn turned_parts_have_no_plane_model() {
     assert!(refused.help.contains("step") && !refused.help.contains("report"), "{}", refused.help);
     assert!(loaded.export("drive", &[Format::Svg], &Options::default()).is_ok());
 }
+
+/// The spring of a transmission: as long, wide and heavy in its drawing as in the table by which it is ordered.
+#[test]
+fn springs_are_as_they_are_ordered() {
+    let exported = export("lavt/butin-2", &[], &[Format::Step]).expect("parts");
+    let spring = exported.set.parts.iter().find(|part| part.name == "spring").expect("a spring");
+    let coil = spring.coil().expect("a coil");
+    let sheet = exported.set.sheets.iter().find(|sheet| sheet.name == "spring").expect("its table");
+    let told = |what: &str| -> f64 {
+        sheet.rows.iter().find(|row| row[0] == what).and_then(|row| row[1].parse().ok()).unwrap_or_else(|| panic!("no {what}"))
+    };
+    // Six digits are told.
+    let mut all = vec![
+        ("length of wire / mm", 1e3 * coil.wire_length_m()),
+        ("inner diameter, free / mm", 1e3 * coil.inner_diameter_m()),
+        ("wire diameter / mm", 1e3 * coil.wire_m),
+        ("turns", coil.turns()),
+        ("length of the body / mm", 1e3 * (coil.rise_m() + coil.wire_m)),
+    ];
+    all.extend(spring.mass_kg().map(|kg| ("mass / g", 1e3 * kg)));
+    for (what, value) in all {
+        assert!((value / told(what) - 1.0).abs() < 2e-4, "{what}: {value}");
+    }
+    let hand = sheet.rows.iter().find(|row| row[0] == "hand").map(|row| row[1].as_str());
+    assert_eq!(hand, Some(if coil.is_right_handed { "right" } else { "left" }));
+    let file = exported.files.iter().find(|(name, _)| name == "part-spring.step").map(|(_, bytes)| bytes).expect("a file");
+    assert!(std::str::from_utf8(file).is_ok_and(|text| text.contains("RATIONAL_B_SPLINE_SURFACE")));
+    let document = exported.document();
+    let part = document["parts"].as_array().and_then(|parts| parts.iter().find(|part| part["name"] == "spring")).expect("told");
+    assert_eq!(part["ends"][1]["kind"], "leg along the axis");
+}

@@ -2,6 +2,7 @@
 //! which people are shown it.
 
 mod check;
+mod coil;
 mod curve;
 mod figure;
 mod outcome;
@@ -12,6 +13,7 @@ mod study;
 mod turned;
 
 pub use check::{Check, CheckState, Sense};
+pub use coil::{Coil, CoilEnd, CoilError, Winding, WireKind, WireLine, WirePiece, WireStation};
 pub use curve::{Axis, Branch, Curve};
 pub use figure::{
     BarRow, Bars, Figure, FigureContent, Film, Frame, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan,

@@ -3,7 +3,7 @@
 use forcewright_base::units::Unit;
 use forcewright_curves::Profile;
 
-use crate::{Check, Turned};
+use crate::{Check, Coil, Turned};
 
 /// A piece that is made: what it is called, what it is made of, and its body.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,8 @@ pub enum Body {
     Plate(Plate),
     /// Made on a lathe.
     Turned(Turned),
+    /// Wound of wire.
+    Coil(Coil),
 }
 
 /// A plate of constant thickness, cut or printed in one piece.
@@ -82,7 +84,7 @@ impl Part {
     pub fn plate(&self) -> Option<&Plate> {
         match &self.body {
             Body::Plate(plate) => Some(plate),
-            Body::Turned(_) => None,
+            Body::Turned(_) | Body::Coil(_) => None,
         }
     }
 
@@ -90,7 +92,15 @@ impl Part {
     pub fn turned(&self) -> Option<&Turned> {
         match &self.body {
             Body::Turned(turned) => Some(turned),
-            Body::Plate(_) => None,
+            Body::Plate(_) | Body::Coil(_) => None,
+        }
+    }
+
+    /// Its coil, if it is one.
+    pub fn coil(&self) -> Option<&Coil> {
+        match &self.body {
+            Body::Coil(coil) => Some(coil),
+            Body::Plate(_) | Body::Turned(_) => None,
         }
     }
 
@@ -99,6 +109,7 @@ impl Part {
         match &self.body {
             Body::Plate(plate) => plate.area_m2() * plate.depth_m,
             Body::Turned(turned) => turned.volume_m3(),
+            Body::Coil(coil) => coil.volume_m3(),
         }
     }
 
@@ -109,6 +120,7 @@ impl Part {
             // In this order, to which rounding clings.
             Body::Plate(plate) => density_kg_per_m3 * plate.area_m2() * plate.depth_m,
             Body::Turned(turned) => density_kg_per_m3 * turned.volume_m3(),
+            Body::Coil(coil) => density_kg_per_m3 * coil.volume_m3(),
         })
     }
 }

@@ -102,6 +102,14 @@ fn summary(exported: &Exported) -> String {
                     count(turned.drillings.len(), "drilling")
                 );
             }
+            Body::Coil(coil) => {
+                let [wire, outer, long, of_wire] =
+                    [coil.wire_m, coil.outer_diameter_m(), coil.length_m(), coil.wire_length_m()].map(millimetres);
+                let hand = if coil.is_right_handed { "right" } else { "left" };
+                let turns = format_number(coil.turns(), 5);
+                let _ = writeln!(text, "{}: wire {wire} mm, diameter {outer} mm, {long} mm long{material}", part.name);
+                let _ = writeln!(text, "  {turns} turns, {hand}-handed, length of wire {of_wire} mm{mass}");
+            }
         }
         for note in &part.notes {
             let _ = writeln!(text, "  {note}");

@@ -1,7 +1,7 @@
 //! The parts of a design as a page for people, and as a figure of its report.
 
 use forcewright_base::units::{format_number, format_si};
-use forcewright_model::{Body, Check, CheckState, Figure, FigureContent, Part, PartSet, Plate, Section, Sense, Turned};
+use forcewright_model::{Body, Check, CheckState, Coil, Figure, FigureContent, Part, PartSet, Plate, Section, Sense, Turned};
 use forcewright_report::study::{StudyColumn, StudyPage, StudyPart, StudySection, page};
 
 use super::Exported;
@@ -11,8 +11,11 @@ use crate::{Loaded, VERSION};
 fn figure(set: &PartSet) -> Figure {
     let several = set.parts.len() > 1;
     let facts: Vec<String> = set.parts.iter().map(|part| in_words(part, several, set)).collect();
-    let (title, lead) = match (set.parts.iter().any(|part| part.turned().is_some()), several) {
+    let has_coil = set.parts.iter().any(|part| part.coil().is_some());
+    let (title, lead) = match (is_made(set), several) {
+        (true, true) if has_coil => ("The parts as they are made", "Turned parts are shown cut along their axis, springs from the side."),
         (true, true) => ("The parts as they are made", "Turned parts are shown cut along their axis."),
+        (true, false) if has_coil => ("The part as it is made", "It is shown from the side."),
         (true, false) => ("The part as it is made", "It is shown cut along its axis."),
         (false, true) => ("The parts as they are cut", "They are cut, with holes and fillets; `[parts]` says how large they are."),
         (false, false) => ("The part as it is cut", "It is cut, with holes and fillets; `[parts]` says how large they are."),
@@ -23,6 +26,11 @@ fn figure(set: &PartSet) -> Figure {
         caption: format!("{lead} {}", facts.join(" ")),
         content: FigureContent::Part(set.clone()),
     }
+}
+
+/// Whether there are parts that are not cut out of a plate.
+fn is_made(set: &PartSet) -> bool {
+    set.parts.iter().any(|part| part.plate().is_none())
 }
 
 /// What a maker asks first, in a sentence.
@@ -42,6 +50,7 @@ pub(super) fn facts(part: &Part, set: &PartSet) -> Vec<(&'static str, String)> {
     let (mut all, fillets) = match &part.body {
         Body::Plate(plate) => (plate_facts(plate, set), plate.fillets),
         Body::Turned(turned) => (turned_facts(turned, set), None),
+        Body::Coil(coil) => (coil_facts(coil, set), None),
     };
     if let Some(mass_kg) = part.mass_kg() {
         all.push(("mass", format!("{} g", format_number(1e3 * mass_kg, 3))));
@@ -89,6 +98,26 @@ fn turned_facts(turned: &Turned, set: &PartSet) -> Vec<(&'static str, String)> {
         let text =
             format!("{}: diameter {diameter} at z = {z}, {angle}°, {} deep; not in the solid", drilling.purpose, length(drilling.depth_m));
         all.push(("drilling", text));
+    }
+    all
+}
+
+fn coil_facts(coil: &Coil, set: &PartSet) -> Vec<(&'static str, String)> {
+    let length = |m: f64| format_si(m, &set.display, 4);
+    let hand = if coil.is_right_handed { "right" } else { "left" };
+    let turns = format_number(coil.turns(), 5);
+    let mut all = vec![
+        ("wire", length(coil.wire_m)),
+        ("outer diameter", length(coil.outer_diameter_m())),
+        ("inner diameter", length(coil.inner_diameter_m())),
+        ("turns", format!("{turns}, {hand}-handed")),
+        ("length", length(coil.length_m())),
+        ("length of wire", length(coil.wire_length_m())),
+    ];
+    for (name, end) in ["lower end", "upper end"].into_iter().zip(&coil.ends) {
+        let leg = if end.leg_m() > 0.0 { format!(" of {}", length(end.leg_m())) } else { String::new() };
+        let bend = end.bend_m().map_or_else(String::new, |m| format!(", bent to a mean radius of {}", length(m)));
+        all.push((name, format!("{}{leg}{bend}", end.words())));
     }
     all
 }
@@ -144,7 +173,7 @@ impl Exported {
                 rows: sheet.rows.clone(),
             })
             .collect();
-        let is_turned = set.parts.iter().any(|part| part.turned().is_some());
+        let is_made = is_made(set);
         page(&StudyPage {
             kind: if set.parts.len() == 1 { "Part" } else { "Parts" }.to_owned(),
             title: self.title.clone(),
@@ -153,13 +182,13 @@ impl Exported {
             sections: [
                 StudySection {
                     id: "part",
-                    title: if is_turned { "As it is made" } else { "As it is cut" },
+                    title: if is_made { "As it is made" } else { "As it is cut" },
                     parts: vec![StudyPart::Figure(Box::new(figure(set)))],
                 },
                 StudySection {
                     id: "measures",
                     title: "Measures",
-                    parts: vec![table(if is_turned { "Measures of the parts" } else { "Measures of the outline" }, &measures, rows)],
+                    parts: vec![table(if is_made { "Measures of the parts" } else { "Measures of the outline" }, &measures, rows)],
                 },
                 StudySection { id: "process", title: "Can it be made?", parts: made },
                 StudySection { id: "sheets", title: "Sheets", parts: sheets },

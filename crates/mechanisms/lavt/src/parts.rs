@@ -1,4 +1,4 @@
-//! What is made of a design: gears, hub, friction ring, plates of carrier and chassis, and the tables of spring, fits and assembly.
+//! What is made of a design: gears, hub, spring, friction ring, plates of carrier and chassis, and the tables of spring, fits and assembly.
 //!
 //! The gears are the drawn ones of [`forcewright_elements::gears`]; what carries them is simple: plates and sleeves with the diameters that
 //! matter. Keys, bearings and housing are the business of the machine around.
@@ -13,7 +13,7 @@ use forcewright_contract::gears::GearPart;
 use forcewright_contract::judge::Comparison;
 use forcewright_curves::Profile;
 use forcewright_elements::gears::{GearError, ToothProfile, Wheel};
-use forcewright_model::{Body, Check, Hole, NoPart, Part, PartSet, Plate, Section, Sense, Turned};
+use forcewright_model::{Body, Check, Coil, CoilEnd, Hole, NoPart, Part, PartSet, Plate, Section, Sense, Turned, Winding};
 
 use crate::analysis::Behaviour;
 use crate::design::Design;
@@ -23,6 +23,9 @@ use crate::gears::wheels;
 const CHORD: f64 = 5e-4;
 /// Turns beside each other, over the wire: a little air.
 pub(crate) const AIR: f64 = 1.1;
+/// Bend of the end that goes into the ring, in the middle of the wire, and the leg beyond it, wires.
+const BEND: f64 = 1.5;
+const LEG: f64 = 3.0;
 /// Least wall between a bore and the roots of teeth, modules.
 const LEAST_WALL: f64 = 1.0;
 /// Bores of sun and planets where the project gives none, over their root diameters.
@@ -93,6 +96,8 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
         [sizes.hub_length_m, design.built.hub_m, design.making.hub_bore_m],
         &hub_notes(design),
     )?);
+    parts.push(spring(design)?);
+    parts.push(seat(design, &sizes, leg_m(&coil(design))));
     parts.push(sleeve(
         design,
         "friction-ring",
@@ -113,7 +118,7 @@ fn hole(centre_m: [f64; 2], diameter_m: f64, purpose: &str) -> Hole {
 
 fn gears(design: &Design, sizes: &Sizes) -> Result<Vec<Part>, NoPart> {
     let gears = &design.built.gears;
-    let names = [("sun", "Sun gear"), ("planet", "Planet gear"), ("ring", "Ring gear with the seat of the spring")];
+    let names = [("sun", "Sun gear"), ("planet", "Planet gear"), ("ring", "Ring gear")];
     let density = design.gear_material.as_ref().and_then(|m| m.density_kg_per_m3);
     let mut all = Vec::new();
     for (i, (wheel, (name, title))) in sizes.wheels.iter().zip(names).enumerate() {
@@ -121,11 +126,7 @@ fn gears(design: &Design, sizes: &Sizes) -> Result<Vec<Part>, NoPart> {
         let holes = match i {
             0 => vec![hole([0.0; 2], sizes.sun_bore_m, "shaft of the input")],
             1 => vec![hole([0.0; 2], sizes.pins_m, "pin of the carrier")],
-            _ => vec![hole(
-                [0.5 * (wheel.root_radius_m + 0.5 * sizes.outer_m), 0.0],
-                1.05 * design.built.spring.wire_m,
-                "end of the spring, along the axis",
-            )],
+            _ => rim_holes(design, sizes),
         };
         let gear = GearPart {
             name,
@@ -151,6 +152,25 @@ fn gears(design: &Design, sizes: &Sizes) -> Result<Vec<Part>, NoPart> {
         all.push(part);
     }
     Ok(all)
+}
+
+/// Holes that bolt ring and seat together, in the rim outside of the teeth.
+fn rim_holes(design: &Design, sizes: &Sizes) -> Vec<Hole> {
+    let middle_m = 0.5 * (sizes.wheels[2].root_radius_m + 0.5 * sizes.outer_m);
+    around(BOLTS, middle_m, 0.4 * design.making.ring_wall_m, "screw or pin of ring and seat")
+}
+
+/// The disc on the ring that takes the end of the spring; the carrier passes through its middle.
+fn seat(design: &Design, sizes: &Sizes, leg_m: f64) -> Part {
+    let wire_m = design.built.spring.wire_m;
+    let mut holes = rim_holes(design, sizes);
+    holes.push(hole([leg_m, 0.0], 1.05 * wire_m, "end of the spring, along the axis"));
+    holes.push(hole([0.0; 2], 2.0 * (leg_m - 1.5 * wire_m).max(wire_m), "hub and carrier"));
+    let notes = vec![
+        "It stands off the ring by the thickness of the carrier's plate, which turns between them: washers on the screws.".to_owned(),
+        "The hole for the spring is tight: its end must not tilt.".to_owned(),
+    ];
+    plate(design, "ring-seat", "Seat of the spring on the ring", sizes.outer_m, holes, notes)
 }
 
 /// Limits of size of a diameter.
@@ -198,6 +218,57 @@ fn sleeve(design: &Design, name: &str, title: &str, [length_m, outer_m, bore_m]:
         notes: notes.to_vec(),
         body: Body::Turned(body),
     })
+}
+
+/// The spring as it is wound, free: it lies on the hub below and goes into the ring above.
+fn coil(design: &Design) -> Coil {
+    let spring = &design.built.spring;
+    let turns = spring.hub_turns + spring.free_turns + spring.unsupported_turns;
+    Coil {
+        wire_m: spring.wire_m,
+        radius_m: 0.5 * (spring.inner_m + spring.wire_m),
+        windings: vec![Winding::even(turns, AIR * spring.wire_m)],
+        is_right_handed: spring.right_hand,
+        start_rad: 0.0,
+        ends: [CoilEnd::Cut, CoilEnd::Axial { bend_m: BEND * spring.wire_m, length_m: LEG * spring.wire_m }],
+    }
+}
+
+fn spring(design: &Design) -> Result<Part, NoPart> {
+    let body = coil(design);
+    body.check().map_err(|error| NoPart {
+        code: "E0820",
+        message: format!("the spring cannot be wound: {error}"),
+        help: "`spring.inner_diameter` larger, or `spring.wire_diameter` smaller".to_owned(),
+    })?;
+    Ok(Part {
+        name: "spring".to_owned(),
+        title: "Wrap spring".to_owned(),
+        material: design.wire.grade.map(|grade| format!("spring steel wire EN 10270-1 {}", grade.name)),
+        density_kg_per_m3: design.wire.density_kg_per_m3,
+        notes: spring_notes(design, &body),
+        body: Body::Coil(body),
+    })
+}
+
+/// Distance of the leg from the axis, m.
+fn leg_m(coil: &Coil) -> f64 {
+    coil.line().pieces().last().map_or(0.0, |leg| {
+        let [x, y, _] = leg.at(1.0).point_m;
+        maths::hypot(x, y)
+    })
+}
+
+fn spring_notes(design: &Design, coil: &Coil) -> Vec<String> {
+    let length = |m: f64| format_si(m, &design.units.length, 6);
+    let spring = &design.built.spring;
+    vec![
+        format!("Inner diameter, free: {}; the shift depends on it.", limits_of_size(design, spring.inner_m, design.scatter.inner_m)),
+        format!("Wire: diameter {}.", limits_of_size(design, spring.wire_m, design.scatter.wire_m)),
+        "The lower end, cut square, lies free on the hub; the upper one goes into the ring.".to_owned(),
+        format!("The leg lies {} from the axis.", length(leg_m(coil))),
+        "Drawn free and even, a tenth of the wire between turns; `spring.csv` says how it is ordered.".to_owned(),
+    ]
 }
 
 fn plate(design: &Design, name: &str, title: &str, diameter_m: f64, holes: Vec<Hole>, notes: Vec<String>) -> Part {

@@ -55,6 +55,31 @@ fn main() -> io::Result<()> {
             "facet_error_mm": options.facet_error_m * 1e3,
         }));
     }
+    let mut springs = Vec::new();
+    for common::springs::Spring { part, wire_length_m, volume_m3, surface_m2, faces } in common::springs::springs() {
+        for format in Format::ALL.into_iter().filter(|format| *format != Format::Inp) {
+            let bytes = write(&part, format, &options).map_err(io::Error::other)?;
+            fs::write(folder.join(format!("{}.{}", part.name, format.extension())), bytes)?;
+        }
+        let Some(coil) = part.coil() else { continue };
+        let [low, high] = coil.extent_m();
+        springs.push(json!({
+            "name": part.name,
+            "title": part.title,
+            "wire_mm": coil.wire_m * 1e3,
+            "wire_length_mm": wire_length_m * 1e3,
+            "volume_mm3": volume_m3 * 1e9,
+            "surface_mm2": surface_m2 * 1e6,
+            "outer_mm": coil.outer_diameter_m() * 1e3,
+            "inner_mm": coil.inner_diameter_m() * 1e3,
+            "low_mm": low.map(|m| m * 1e3),
+            "high_mm": high.map(|m| m * 1e3),
+            "faces": faces,
+            "arc_error_mm": options.arc_error_m * 1e3,
+            "facet_error_mm": options.facet_error_m * 1e3,
+        }));
+    }
+    fs::write(folder.join("springs.json"), format!("{:#}\n", json!(springs)))?;
     fs::write(folder.join("drums.json"), format!("{:#}\n", json!(drums)))?;
     fs::write(folder.join("samples.json"), format!("{:#}\n", json!(known)))
 }

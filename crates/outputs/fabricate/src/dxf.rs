@@ -7,13 +7,16 @@ use std::fmt::{Display, Write as _};
 
 use forcewright_model::Part;
 
-use crate::shape::{Bulge, Loop, Point, Shape};
+use crate::coil::{Line, Views};
+use crate::shape::{Bulge, Circle, Loop, Point, Shape};
 use crate::text::{length, ratio, remarks};
 
 /// Layers with their colours by their number: white (black on paper), red, blue, green.
 const LAYERS: [(&str, u8); 5] = [("0", 7), ("OUTLINE", 7), ("CUTOUTS", 1), ("HOLES", 5), ("NOTES", 3)];
 /// The layer of the centre line of a turned part.
 const CENTRE: (&str, u8) = ("CENTRE", 4);
+/// Layers of the views of a spring.
+const OF_SPRING: [(&str, u8); 5] = [("0", 7), ("OUTLINE", 7), ("END", 5), CENTRE, ("NOTES", 3)];
 /// Height of letters and distance of lines, mm.
 const LETTERS: f64 = 2.5;
 const LINES: f64 = 5.0;
@@ -32,17 +35,33 @@ const FIRST_FREE: u32 = 0x10;
 pub(crate) fn write(part: &Part, shape: &Shape, arc_error: f64) -> String {
     let mut notes = remarks(part);
     notes.push(format!("Splines are drawn as arcs within {} mm.", length(arc_error)));
+    let layers: Vec<(&str, u8)> = LAYERS.into_iter().chain(shape.axis.map(|_| CENTRE)).collect();
+    document(&notes, shape.extent(), &layers, |dxf| dxf.shape(shape, arc_error))
+}
+
+/// The views of a spring, in lines within `chord` mm.
+pub(crate) fn write_views(part: &Part, views: &Views, chord: f64) -> String {
+    let mut notes = remarks(part);
+    notes.push(format!("Side view: what is seen, as chords within {} mm. View from the upper end on its left.", length(chord)));
+    document(&notes, views.extent, &OF_SPRING, |dxf| dxf.views(views))
+}
+
+/// A file with these notes, and entities within an extent.
+fn document(notes: &[String], extent: [Point; 2], layers: &[(&str, u8)], entities: impl FnOnce(&mut Dxf)) -> String {
     let mut body = Dxf { out: String::new(), next: FIRST_FREE };
-    body.tables(shape);
+    body.tables(extent, layers);
     body.blocks();
-    body.entities(shape, &notes, arc_error);
+    body.section("ENTITIES");
+    entities(&mut body);
+    body.notes(extent, notes);
+    body.pair(0, "ENDSEC");
     body.objects();
     body.pair(0, "EOF");
     let mut head = Dxf { out: String::new(), next: FIRST_FREE };
-    for note in &notes {
+    for note in notes {
         head.pair(999, encoded(note));
     }
-    head.header(shape.extent(), body.next);
+    head.header(extent, body.next);
     head.out + &body.out
 }
 
@@ -94,15 +113,14 @@ impl Dxf {
         self.pair(0, "ENDSEC");
     }
 
-    fn tables(&mut self, shape: &Shape) {
+    fn tables(&mut self, extent: [Point; 2], layers: &[(&str, u8)]) {
         self.section("CLASSES");
         self.pair(0, "ENDSEC");
         self.section("TABLES");
-        self.view_table(shape.extent());
+        self.view_table(extent);
         self.table("LTYPE", "AcDbLinetypeTableRecord", &["ByBlock", "ByLayer", "Continuous"], |dxf, _| {
             dxf.pairs(&[(70, "0"), (3, ""), (72, "65"), (73, "0"), (40, "0")]);
         });
-        let layers: Vec<(&str, u8)> = LAYERS.into_iter().chain(shape.axis.map(|_| CENTRE)).collect();
         let names: Vec<&str> = layers.iter().map(|(name, _)| *name).collect();
         self.table("LAYER", "AcDbLayerTableRecord", &names, |dxf, index| {
             dxf.pair(70, 0);
@@ -188,23 +206,36 @@ impl Dxf {
         self.pair(0, "ENDSEC");
     }
 
-    fn entities(&mut self, shape: &Shape, notes: &[String], arc_error: f64) {
-        self.section("ENTITIES");
+    fn shape(&mut self, shape: &Shape, arc_error: f64) {
         self.polyline("OUTLINE", &shape.outline, arc_error);
         for cutout in &shape.cutouts {
             self.polyline("CUTOUTS", cutout, arc_error);
         }
         for hole in &shape.holes {
-            self.entity("CIRCLE", "HOLES", "AcDbCircle");
-            self.point(10, &[hole.centre[0], hole.centre[1], 0.0]);
-            self.pair(40, length(hole.radius));
+            self.circle("HOLES", hole);
         }
         if let Some([from, to]) = shape.axis {
-            self.entity("LINE", CENTRE.0, "AcDbLine");
-            self.point(10, &[from[0], from[1], 0.0]);
-            self.point(11, &[to[0], to[1], 0.0]);
+            self.line(CENTRE.0, from, to);
         }
-        let [low, _] = shape.extent();
+    }
+
+    fn views(&mut self, views: &Views) {
+        for line in &views.outline {
+            self.chain("OUTLINE", line);
+        }
+        for circle in &views.end {
+            self.circle("END", circle);
+        }
+        for line in &views.centre {
+            match line.points[..] {
+                [from, to] => self.line(CENTRE.0, from, to),
+                _ => self.chain(CENTRE.0, line),
+            }
+        }
+        self.circle(CENTRE.0, &views.mean);
+    }
+
+    fn notes(&mut self, [low, _]: [Point; 2], notes: &[String]) {
         for (line, note) in notes.iter().enumerate() {
             self.entity("TEXT", "NOTES", "AcDbText");
             self.point(10, &[low[0], low[1] - LINES * (line as f64 + 1.5), 0.0]);
@@ -213,7 +244,28 @@ impl Dxf {
             // The class is named twice: after the text comes its alignment.
             self.pair(100, "AcDbText");
         }
-        self.pair(0, "ENDSEC");
+    }
+
+    fn circle(&mut self, layer: &str, circle: &Circle) {
+        self.entity("CIRCLE", layer, "AcDbCircle");
+        self.point(10, &[circle.centre[0], circle.centre[1], 0.0]);
+        self.pair(40, length(circle.radius));
+    }
+
+    fn line(&mut self, layer: &str, from: Point, to: Point) {
+        self.entity("LINE", layer, "AcDbLine");
+        self.point(10, &[from[0], from[1], 0.0]);
+        self.point(11, &[to[0], to[1], 0.0]);
+    }
+
+    /// An open polyline.
+    fn chain(&mut self, layer: &str, line: &Line) {
+        self.entity("LWPOLYLINE", layer, "AcDbPolyline");
+        self.pair(90, line.points.len());
+        self.pairs(&[(70, "0"), (43, "0")]);
+        for point in &line.points {
+            self.point(10, point);
+        }
     }
 
     fn entity(&mut self, kind: &str, layer: &str, class: &str) {

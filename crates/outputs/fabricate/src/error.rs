@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use forcewright_model::TurnedError;
+use forcewright_model::{CoilError, TurnedError};
 
 use crate::Format;
 
@@ -112,7 +112,9 @@ pub enum Problem {
     },
     /// The turned part is none.
     Turned(TurnedError),
-    /// The format has no turned parts.
+    /// The coil is none.
+    Coil(CoilError),
+    /// The format has no turned or wound parts.
     OnlyPlates {
         /// The format.
         format: Format,
@@ -177,8 +179,12 @@ impl fmt::Display for Problem {
             Self::TooSmall => write!(f, "too small to be written in single precision"),
             Self::Mesh { what } => write!(f, "no mesh of finite elements: {what}"),
             Self::Turned(error) => write!(f, "{error}"),
+            Self::Coil(error) => write!(f, "{error}"),
             Self::OnlyPlates { format } => {
-                write!(f, "{format} is for plates only; write a turned part as STEP and let the program of finite elements mesh that")
+                write!(
+                    f,
+                    "{format} is for plates only; write a turned or wound part as STEP and let the program of finite elements mesh that"
+                )
             }
             Self::TooManyCorners { corners, most } => {
                 write!(f, "a mesh of {corners:.0} corners, allowed are {most:.0}; a larger facet_error_m makes fewer, STEP needs none")

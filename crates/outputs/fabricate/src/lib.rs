@@ -2,7 +2,7 @@
 //!
 //! [`write()`] turns a [`Part`] into the bytes of a file. It is a pure function: no clock, no files, the same bytes every time and on every
 //! machine. All files are in millimetres, with the origin and the axes of the part; a plate fills `0 ≤ z ≤ depth`, a turned part stands
-//! on the plane z = 0 around the z axis.
+//! on the plane z = 0 around the z axis, a spring lies around it.
 //!
 //! # Plates
 //!
@@ -28,13 +28,29 @@
 //! | [`Format::Stl`], [`Format::ThreeMf`] | chords within [`Options::facet_error_m`] | facets within the same | as for plates |
 //! | [`Format::Inp`] | [`Problem::OnlyPlates`] | | |
 //!
+//! # Springs
+//!
+//! A spring lies around the z axis; the middle of its wire begins to wind at z = 0.
+//!
+//! | format | windings, bends | straight legs | holds besides |
+//! | --- | --- | --- | --- |
+//! | [`Format::Dxf`] | side view with hidden lines left out, z to the right, x upwards, as chords within [`Options::arc_error_m`] | the same | the cylinders around and inside on END; axis, mean diameter and, from the end, the middles of legs on CENTRE; texts on NOTES |
+//! | [`Format::Svg`] | the same | the same | title and description |
+//! | [`Format::Step`] | half tubes of a turn at most: exact circles across (rational), B-splines of degree 5 along, within 10⁻⁷ mm | exact | plane circular ends, one closed solid, product name |
+//! | [`Format::Stl`], [`Format::ThreeMf`] | facets within [`Options::facet_error_m`] | the same | as for plates |
+//! | [`Format::Inp`] | [`Problem::OnlyPlates`] | | |
+//!
+//! Facets of neighbouring turns may meet where the gap between them is less than twice the error of facets.
+//!
 //! Drillings are told in the texts of the drawings and cut into no solid. Corners of meshes between those of a profile's chords lie on the
 //! chords. A mesh has at most ten million corners ([`Problem::TooManyCorners`]).
 //!
 //! A part is checked before anything is written ([`Error`]): boundaries that are open, run the wrong way, cross or touch each other, or
-//! lie outside the outline make no part; neither do the turned bodies that [`Turned::check`] refuses.
+//! lie outside the outline make no part; neither do the bodies that [`Turned::check`] and
+//! [`Coil::check`] refuse.
 
 mod cap;
+mod coil;
 mod dxf;
 mod elements;
 mod error;
@@ -53,7 +69,7 @@ mod zip;
 pub use error::{Boundary, Error, Place, Problem};
 pub use format::{Format, UnknownFormat};
 
-use forcewright_model::{Body, Part, Plate, Turned};
+use forcewright_model::{Body, Coil, Part, Plate, Turned};
 
 /// How closely curves are followed where a format cannot hold them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,6 +105,7 @@ pub fn write(part: &Part, format: Format, options: &Options) -> Result<Vec<u8>, 
     match &part.body {
         Body::Plate(plate) => write_plate(part, plate, format, options),
         Body::Turned(turned) => write_turned(part, turned, format, options),
+        Body::Coil(coil) => write_coil(part, coil, format, options),
     }
 }
 
@@ -118,6 +135,20 @@ fn write_turned(part: &Part, turned: &Turned, format: Format, options: &Options)
         Format::Step => Ok(turned::write(part, &stack).into_bytes()),
         Format::Dxf => Ok(dxf::write(part, &drawing()?, options.arc_error_m * shape::MM_PER_M).into_bytes()),
         Format::Svg => Ok(svg::write(part, &drawing()?).into_bytes()),
+        Format::Inp => Err(Error { place: Place::Part, problem: Problem::OnlyPlates { format } }),
+    }
+}
+
+fn write_coil(part: &Part, coil: &Coil, format: Format, options: &Options) -> Result<Vec<u8>, Error> {
+    let wound = coil::Wound::new(coil)?;
+    let mesh = || coil::mesh(&wound, options.facet_error_m * shape::MM_PER_M);
+    let chord = options.arc_error_m * shape::MM_PER_M;
+    match format {
+        Format::Stl => Ok(stl::write(part, &mesh()?)),
+        Format::ThreeMf => Ok(three_mf::write(part, &mesh()?)),
+        Format::Step => Ok(coil::write(part, &wound).into_bytes()),
+        Format::Dxf => Ok(dxf::write_views(part, &coil::views(&wound, chord), chord).into_bytes()),
+        Format::Svg => Ok(svg::write_views(part, &coil::views(&wound, chord)).into_bytes()),
         Format::Inp => Err(Error { place: Place::Part, problem: Problem::OnlyPlates { format } }),
     }
 }

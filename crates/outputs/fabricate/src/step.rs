@@ -106,11 +106,16 @@ impl Step {
 
     /// A frame by its origin, its third axis, and its first axis in the plane of the part.
     fn frame(&mut self, origin: &[f64; 3], axis: [f64; 3], first: Point) -> Entity {
-        let (origin, axis, first) = (self.point(origin), self.direction(axis), self.direction([first[0], first[1], 0.0]));
+        self.frame_in_space(origin, axis, [first[0], first[1], 0.0])
+    }
+
+    /// A frame by its origin, its third axis and its first axis.
+    pub(crate) fn frame_in_space(&mut self, origin: &[f64; 3], axis: [f64; 3], first: [f64; 3]) -> Entity {
+        let (origin, axis, first) = (self.point(origin), self.direction(axis), self.direction(first));
         self.add(format_args!("AXIS2_PLACEMENT_3D('',{origin},{axis},{first})"))
     }
 
-    fn line(&mut self, from: &[f64; 3], direction: [f64; 3]) -> Entity {
+    pub(crate) fn line(&mut self, from: &[f64; 3], direction: [f64; 3]) -> Entity {
         let (from, direction) = (self.point(from), self.direction(direction));
         let vector = self.add(format_args!("VECTOR('',{direction},1.)"));
         self.add(format_args!("LINE('',{from},{vector})"))
@@ -265,7 +270,7 @@ fn first_axis(edge: &Edge, centre: Point, sweep_rad: f64) -> Point {
 }
 
 /// A number with the point that STEP asks of reals.
-fn real(digits: &str) -> String {
+pub(crate) fn real(digits: &str) -> String {
     if digits.contains('.') { digits.to_owned() } else { format!("{digits}.") }
 }
 

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use forcewright_model::Part;
 
-use crate::shape::{Curve, Edge, Loop, Point, Shape};
+use crate::coil::{Line, Views};
+use crate::shape::{Circle, Curve, Edge, Loop, Point, Shape};
 use crate::text::{length, remarks, xml};
 
 /// Room around the part, mm.
@@ -12,19 +13,7 @@ const MARGIN: f64 = 1.0;
 
 /// The drawing. One user unit is one millimetre; lines are thin, for they are where the tool goes.
 pub(crate) fn write(part: &Part, shape: &Shape) -> String {
-    let [low, high] = shape.extent();
-    // SVG counts y downwards; it stays where it is and changes its sign.
-    let (left, top) = (low[0] - MARGIN, -high[1] - MARGIN);
-    let (width, height) = (high[0] - low[0] + 2.0 * MARGIN, high[1] - low[1] + 2.0 * MARGIN);
-    let [left, top, width, height] = [left, top, width, height].map(|mm| format!("{mm:.3}"));
-    let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let _ = writeln!(
-        out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{width}mm\" height=\"{height}mm\" \
-         viewBox=\"{left} {top} {width} {height}\">"
-    );
-    let _ = writeln!(out, "<title>{}</title>", xml(&part.title));
-    let _ = writeln!(out, "<desc>{}</desc>", xml(&remarks(part)[1..].join(" ")));
+    let mut out = head(part, shape.extent());
     out.push_str("<g fill=\"none\" stroke-width=\"0.1\">\n<g id=\"outline\" stroke=\"#000000\">\n");
     let _ = writeln!(out, "<path d=\"{}\"/>", path(&shape.outline));
     out.push_str("</g>\n<g id=\"cutouts\" stroke=\"#ff0000\">\n");
@@ -43,6 +32,47 @@ pub(crate) fn write(part: &Part, shape: &Shape) -> String {
         let _ = writeln!(out, "<g id=\"centre\" stroke=\"#008000\" stroke-dasharray=\"4 1 0.5 1\">\n{line}\n</g>");
     }
     out.push_str("</g>\n</svg>\n");
+    out
+}
+
+/// The views of a spring.
+pub(crate) fn write_views(part: &Part, views: &Views) -> String {
+    let mut out = head(part, views.extent);
+    out.push_str("<g fill=\"none\" stroke-width=\"0.1\">\n<g id=\"outline\" stroke=\"#000000\">\n");
+    out.extend(views.outline.iter().map(chain));
+    out.push_str("</g>\n<g id=\"end\" stroke=\"#0000ff\">\n");
+    out.extend(views.end.iter().map(circle));
+    out.push_str("</g>\n<g id=\"centre\" stroke=\"#008000\" stroke-dasharray=\"4 1 0.5 1\">\n");
+    out.extend(views.centre.iter().map(chain));
+    out.push_str(&circle(&views.mean));
+    out.push_str("</g>\n</g>\n</svg>\n");
+    out
+}
+
+fn chain(line: &Line) -> String {
+    let points = line.points.iter().map(|&point| coordinates(point).join(" "));
+    format!("<path d=\"M{}\"/>\n", points.collect::<Vec<_>>().join("L"))
+}
+
+fn circle(circle: &Circle) -> String {
+    let [x, y] = coordinates(circle.centre);
+    format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\"/>\n", length(circle.radius))
+}
+
+/// The beginning of a drawing, up to its first group.
+fn head(part: &Part, [low, high]: [Point; 2]) -> String {
+    // SVG counts y downwards; it stays where it is and changes its sign.
+    let (left, top) = (low[0] - MARGIN, -high[1] - MARGIN);
+    let (width, height) = (high[0] - low[0] + 2.0 * MARGIN, high[1] - low[1] + 2.0 * MARGIN);
+    let [left, top, width, height] = [left, top, width, height].map(|mm| format!("{mm:.3}"));
+    let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let _ = writeln!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{width}mm\" height=\"{height}mm\" \
+         viewBox=\"{left} {top} {width} {height}\">"
+    );
+    let _ = writeln!(out, "<title>{}</title>", xml(&part.title));
+    let _ = writeln!(out, "<desc>{}</desc>", xml(&remarks(part)[1..].join(" ")));
     out
 }
 

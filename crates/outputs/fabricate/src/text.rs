@@ -1,7 +1,7 @@
 //! Numbers and texts as files want them.
 
 pub(crate) use forcewright_base::text::xml;
-use forcewright_model::{Body, Part, Plate, Section, Turned};
+use forcewright_model::{Body, Coil, CoilEnd, Part, Plate, Section, Turned};
 
 use crate::shape::MM_PER_M;
 
@@ -27,6 +27,7 @@ pub(crate) fn remarks(part: &Part) -> Vec<String> {
     let (size, details) = match &part.body {
         Body::Plate(plate) => (format!("Depth: {} mm.", length(plate.depth_m * MM_PER_M)), holes(plate)),
         Body::Turned(turned) => (format!("Length: {} mm.", length(turned.length_m() * MM_PER_M)), sections(turned)),
+        Body::Coil(coil) => (format!("Wire: {} mm.", length(coil.wire_m * MM_PER_M)), windings(coil)),
     };
     let head = [part.title.clone(), format!("Material: {material}. {size}"), "All lengths in mm.".to_owned()];
     head.into_iter().chain(details).chain(part.notes.iter().cloned()).collect()
@@ -71,6 +72,30 @@ fn sections(turned: &Turned) -> Vec<String> {
         let angle = degrees(drilling.angle_rad);
         format!("Drill diameter {diameter}, {depth} deep, at z = {z} and {angle} degrees, not cut into the solid: {}", drilling.purpose)
     }));
+    lines
+}
+
+/// Diameters, windings from z = 0 upwards, ends, and the length of the wire, to a nanometre.
+fn windings(coil: &Coil) -> Vec<String> {
+    let mm = |m: f64| decimals(m * MM_PER_M, 6);
+    let hand = if coil.is_right_handed { "right" } else { "left" };
+    let [outer, mean, inner] = [coil.outer_diameter_m(), 2.0 * coil.radius_m, coil.inner_diameter_m()].map(mm);
+    let mut lines =
+        vec![format!("Diameter {outer} outside, {mean} mean, {inner} inside, {hand}-handed, {} turns", decimals(coil.turns(), 6))];
+    for winding in &coil.windings {
+        let [low, high] = winding.pitch_m;
+        let turns = decimals(winding.turns, 6);
+        let pitch = if (high - low).abs() > 0.0 { format!("{} to {}", mm(low), mm(high)) } else { mm(low) };
+        lines.push(format!("{turns} turns with a pitch of {pitch}"));
+    }
+    for (name, end) in ["Lower", "Upper"].iter().zip(&coil.ends) {
+        let bend = end.bend_m().map_or_else(String::new, |bend_m| format!(", bent to a mean radius of {}", mm(bend_m)));
+        lines.push(match end {
+            CoilEnd::Cut => format!("{name} end: {}", end.words()),
+            _ => format!("{name} end: {} of {}{bend}, cut square", end.words(), mm(end.leg_m())),
+        });
+    }
+    lines.push(format!("Wire {} long in its middle; {} long over all along the axis", mm(coil.wire_length_m()), mm(coil.length_m())));
     lines
 }
 

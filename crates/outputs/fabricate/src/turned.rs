@@ -15,7 +15,8 @@ use crate::error::{Error, Place, Problem};
 use crate::shape::{MM_PER_M, Point};
 
 pub(crate) use mesh::mesh;
-pub(crate) use solid::write;
+pub(crate) use solid::{curve, knots, write};
+pub(crate) use spline::{DEGREE, fitted_within};
 
 /// Sections one upon another around a bore.
 #[derive(Clone, Debug, PartialEq)]

@@ -25,7 +25,7 @@ fn options(facet_error_m: f64) -> Options {
 fn body_of(part: &mut Part) -> &mut Turned {
     match &mut part.body {
         Body::Turned(turned) => turned,
-        Body::Plate(_) => panic!("{} is a plate", part.name),
+        Body::Plate(_) | Body::Coil(_) => panic!("{} is not turned", part.name),
     }
 }
 

@@ -50,11 +50,11 @@ fn spring(design: &Design, behaviour: &Behaviour) -> Sheet {
         radius_m: 0.5 * (spring.inner_m + spring.wire_m),
         turns,
         gap_m: (AIR - 1.0) * spring.wire_m,
-        // An end bent along the axis into the ring.
-        ends_m: 3.0 * spring.wire_m,
+        // As it is drawn: bent along the axis, into the ring.
+        ends_m: super::coil(design).ends_m().iter().sum(),
     };
     if let Ok(winding) = coil.winding(design.wire.density_kg_per_m3.unwrap_or(1.0)) {
-        row("length of wire / mm", mm(winding.wire_length_m), "with an end of three wires bent along the axis, into the ring");
+        row("length of wire / mm", mm(winding.wire_length_m), "with the end that is bent along the axis, into the ring");
         row("length of the body / mm", mm(winding.body_m), "a tenth of the wire between turns");
         if design.wire.density_kg_per_m3.is_some() {
             row("mass / g", format_number(1e3 * winding.mass_kg, 4), "");

@@ -48,14 +48,14 @@ fn faces(step: &mut Step, stack: &Stack) -> Vec<Entity> {
 }
 
 /// The knots 0, 1, 2, … of a spline and how often each counts, as STEP has them.
-fn knots(control: usize) -> (String, String) {
+pub(crate) fn knots(control: usize) -> (String, String) {
     let spans = control - DEGREE;
     let counts = (0..=spans).map(|k| if k == 0 || k == spans { DEGREE + 1 } else { 1 }.to_string());
     let knots = (0..=spans).map(|k| format!("{k}."));
     (counts.collect::<Vec<_>>().join(","), knots.collect::<Vec<_>>().join(","))
 }
 
-fn curve(step: &mut Step, points: &[Entity]) -> Entity {
+pub(crate) fn curve(step: &mut Step, points: &[Entity]) -> Entity {
     let (counts, knots) = knots(points.len());
     let points = points.join(",");
     step.add(format_args!("B_SPLINE_CURVE_WITH_KNOTS('',{DEGREE},({points}),.UNSPECIFIED.,.F.,.F.,({counts}),({knots}),.UNSPECIFIED.)"))

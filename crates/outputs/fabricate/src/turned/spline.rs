@@ -12,7 +12,7 @@ use forcewright_base::maths;
 
 use crate::shape::Point;
 
-pub(super) const DEGREE: usize = 5;
+pub(crate) const DEGREE: usize = 5;
 /// Largest distance between a true surface and what stands for it, from each of the two causes, mm.
 const ERROR: f64 = 5e-8;
 /// Most spans of a segment of a profile.
@@ -87,15 +87,23 @@ fn blossom(control: impl Fn(f64) -> Point, low: f64, knots: [f64; DEGREE]) -> Po
 
 /// Control points over equal spans of a spline that follows a smooth curve over [0, 1], with its ends.
 pub(super) fn fitted(curve: impl Fn(f64) -> Point) -> Vec<Point> {
-    let mut spans = 2;
+    fitted_within(curve, 2, |spline, truth| maths::hypot(spline[0] - truth[0], spline[1] - truth[1]))
+}
+
+/// The same for curves of any dimension; `error` gives the distance, mm, that a point of the spline and the true one stand for.
+pub(crate) fn fitted_within<const N: usize>(
+    curve: impl Fn(f64) -> [f64; N],
+    first: usize,
+    error: impl Fn(&[f64; N], &[f64; N]) -> f64,
+) -> Vec<[f64; N]> {
+    let mut spans = first.max(1);
     loop {
         let control = interpolated(&curve, spans);
-        let error = (0..spans * 4).map(|k| {
+        let errors = (0..spans * 4).map(|k| {
             let x = (k as f64 + 0.5) / 4.0;
-            let (spline, truth) = (value(&control, x), curve(x / spans as f64));
-            maths::hypot(spline[0] - truth[0], spline[1] - truth[1])
+            error(&value(&control, x), &curve(x / spans as f64))
         });
-        if error.fold(0.0, f64::max) <= ERROR || spans >= MOST_SPANS {
+        if errors.fold(0.0, f64::max) <= ERROR || spans >= MOST_SPANS {
             return control;
         }
         spans += 1 + spans / 4;
@@ -103,11 +111,11 @@ pub(super) fn fitted(curve: impl Fn(f64) -> Point) -> Vec<Point> {
 }
 
 /// The spline through a curve at the places of its control points, which is unique after Schoenberg and Whitney.
-fn interpolated(curve: &impl Fn(f64) -> Point, spans: usize) -> Vec<Point> {
+fn interpolated<const N: usize>(curve: &impl Fn(f64) -> [f64; N], spans: usize) -> Vec<[f64; N]> {
     let places = places(spans);
     let size = places.len();
     let mut matrix = vec![0.0; size * size];
-    let mut points: Vec<f64> = Vec::with_capacity(2 * size);
+    let mut points: Vec<f64> = Vec::with_capacity(N * size);
     for (row, &x) in places.iter().enumerate() {
         let (first, weights) = weights(x, spans);
         matrix[row * size + first..=row * size + first + DEGREE].copy_from_slice(&weights);
@@ -116,16 +124,16 @@ fn interpolated(curve: &impl Fn(f64) -> Point, spans: usize) -> Vec<Point> {
     let mut lu = Lu::new();
     // Never singular; were it, the values themselves are a spline that is near, and the test of the error would say so.
     if lu.factor(size, size, &matrix).is_ok() {
-        lu.solve_columns(&mut points, 2);
+        lu.solve_columns(&mut points, N);
     }
-    points.chunks_exact(2).map(|point| [point[0], point[1]]).collect()
+    points.chunks_exact(N).map(|point| std::array::from_fn(|k| point[k])).collect()
 }
 
 /// A point of a spline over [0, spans].
-pub(super) fn value(control: &[Point], x: f64) -> Point {
+fn value<const N: usize>(control: &[[f64; N]], x: f64) -> [f64; N] {
     let (first, weights) = weights(x, control.len() - DEGREE);
     let sum = |axis: usize| weights.iter().zip(&control[first..]).map(|(weight, point)| weight * point[axis]).sum();
-    [sum(0), sum(1)]
+    std::array::from_fn(sum)
 }
 
 /// The basis functions that are not zero at `x`, from the first of them on (Cox and de Boor).

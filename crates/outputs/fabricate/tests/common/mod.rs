@@ -1,6 +1,7 @@
 //! Parts with known areas, for the tests and for programs that read the files.
 
 pub mod drums;
+pub mod springs;
 
 use std::f64::consts::{PI, TAU};
 
@@ -84,7 +85,7 @@ pub fn part(name: &str, depth_m: f64, outline: Profile) -> Part {
 pub fn plate_of(part: &Part) -> &Plate {
     match &part.body {
         Body::Plate(plate) => plate,
-        Body::Turned(_) => panic!("{} is turned", part.name),
+        Body::Turned(_) | Body::Coil(_) => panic!("{} is no plate", part.name),
     }
 }
 
@@ -92,7 +93,7 @@ pub fn plate_of(part: &Part) -> &Plate {
 pub fn plate_mut(part: &mut Part) -> &mut Plate {
     match &mut part.body {
         Body::Plate(plate) => plate,
-        Body::Turned(_) => panic!("{} is turned", part.name),
+        Body::Turned(_) | Body::Coil(_) => panic!("{} is no plate", part.name),
     }
 }
 

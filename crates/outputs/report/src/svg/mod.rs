@@ -10,6 +10,7 @@ mod part;
 mod place;
 mod plot;
 mod scene;
+mod spring;
 mod symbols;
 mod text;
 pub mod ticks;

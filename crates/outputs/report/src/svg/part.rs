@@ -1,8 +1,8 @@
-//! Pictures of parts: plates as they are cut, with windows and holes, turned parts cut along their axis; overall size, narrow places.
+//! Pictures of parts: plates as they are cut, with windows and holes, turned parts cut along their axis, springs from the side; overall size, narrow places.
 
 use std::fmt::Write as _;
 
-use forcewright_base::units::{Unit, format_si};
+use forcewright_base::units::{Unit, format_number, format_si};
 use forcewright_curves::{Bounds, Motion, Profile};
 use forcewright_model::{Body, Part, PartSet, Plate, Turned};
 
@@ -10,6 +10,7 @@ use super::canvas::{Anchor, Canvas, Drawing, Style, n};
 use super::colour::Paint;
 use super::place::{BESIDE, Placer, Rect, from_edge};
 use super::scene::SceneSize;
+use super::spring::Wire;
 use super::symbols;
 use super::ticks;
 
@@ -38,15 +39,23 @@ impl View {
     }
 }
 
-/// What is drawn of a part, in metres: boundaries, and the ends of the centre line of a turned part.
+/// What is drawn of a part, in metres: boundaries or the wire of a spring, and the ends of a centre line.
 #[derive(Default)]
 struct Shown {
     boundaries: Vec<Profile>,
     axis: Option<[[f64; 2]; 2]>,
+    wire: Option<Wire>,
 }
 
-/// Plates lie where they are, in their common plane; one that would lie on another follows to the right, and so do turned parts, axes
-/// upright.
+impl Shown {
+    fn bounds(&self) -> Bounds {
+        let all = self.boundaries.iter().fold(Bounds::of([]), |all, profile| all.union(profile.bounds()));
+        self.wire.iter().fold(all, |all, wire| all.union(wire.bounds))
+    }
+}
+
+/// Plates lie where they are, in their common plane; one that would lie on another follows to the right, and so do turned parts and
+/// springs, axes upright.
 fn shown_parts(set: &PartSet) -> Vec<Shown> {
     let mut bounds = Bounds::of([]);
     let mut laid: Vec<Bounds> = Vec::new();
@@ -66,16 +75,25 @@ fn shown_parts(set: &PartSet) -> Vec<Shown> {
         plates.push(shown);
     }
     let mut plates = plates.into_iter();
-    let one = |part: &Part| match &part.body {
-        Body::Plate(_) => plates.next().unwrap_or_default(),
-        Body::Turned(turned) => {
-            let radius_m = turned.largest_radius_m();
-            let left_m = if bounds.max_m[0].is_finite() { bounds.max_m[0] + ROOM * radius_m } else { 0.0 };
-            let low_m = if bounds.min_m[1].is_finite() { bounds.min_m[1] } else { 0.0 };
-            let shown = sections(turned, [left_m + radius_m, low_m]);
-            bounds = shown.boundaries.iter().fold(bounds, |all, profile| all.union(profile.bounds()));
-            shown
-        }
+    let one = |part: &Part| {
+        let corner = |room_m: f64| {
+            let left_m = if bounds.max_m[0].is_finite() { bounds.max_m[0] + room_m } else { 0.0 };
+            [left_m, if bounds.min_m[1].is_finite() { bounds.min_m[1] } else { 0.0 }]
+        };
+        let shown = match &part.body {
+            Body::Plate(_) => return plates.next().unwrap_or_default(),
+            Body::Turned(turned) => {
+                let radius_m = turned.largest_radius_m();
+                let [left_m, low_m] = corner(ROOM * radius_m);
+                sections(turned, [left_m + radius_m, low_m])
+            }
+            Body::Coil(coil) => match Wire::new(coil, corner(ROOM * 0.5 * coil.outer_diameter_m())) {
+                Some((wire, axis_m)) => Shown { boundaries: Vec::new(), axis: Some(axis_m), wire: Some(wire) },
+                None => Shown::default(),
+            },
+        };
+        bounds = bounds.union(shown.bounds());
+        shown
     };
     set.parts.iter().map(one).collect()
 }
@@ -88,7 +106,7 @@ fn overlap(a: &Bounds, b: &Bounds) -> bool {
 fn plate_boundaries(plate: &Plate, place: &Motion) -> Shown {
     let holes = plate.holes.iter().map(|h| Profile::circle(h.centre_m, 0.5 * h.diameter_m));
     let all = std::iter::once(plate.outline.clone()).chain(plate.cutouts.iter().cloned()).chain(holes);
-    Shown { boundaries: all.map(|profile| profile.transformed(place)).collect(), axis: None }
+    Shown { boundaries: all.map(|profile| profile.transformed(place)).collect(), axis: None, wire: None }
 }
 
 /// Both halves of a body cut along its axis, the foot of which is at a point. Nothing of a body that cannot be made.
@@ -100,14 +118,13 @@ fn sections(turned: &Turned, foot_m: [f64; 2]) -> Shown {
     let right = half(0.0).map(|profile| profile.transformed(&placed));
     let left = half(std::f64::consts::PI).map(|profile| profile.transformed(&Motion::mirror([0.0; 2], [0.0, 1.0])).transformed(&placed));
     let end_m = [foot_m[0], foot_m[1] + turned.length_m()];
-    Shown { boundaries: right.into_iter().chain(left).collect(), axis: Some([foot_m, end_m]) }
+    Shown { boundaries: right.into_iter().chain(left).collect(), axis: Some([foot_m, end_m]), wire: None }
 }
 
-/// Draws plates in their common plane, turned parts beside them.
+/// Draws plates in their common plane, turned parts and springs beside them.
 pub(super) fn draw(set: &PartSet, size: SceneSize, title: &str, caption: &str) -> Drawing {
     let parts = shown_parts(set);
-    let boundaries = || parts.iter().flat_map(|part| &part.boundaries);
-    let bounds = boundaries().fold(Bounds::of([]), |all, profile| all.union(profile.bounds()));
+    let bounds = parts.iter().fold(Bounds::of([]), |all, part| all.union(part.bounds()));
     let extent = |k: usize| ticks::sane(bounds.max_m[k] - bounds.min_m[k]).filter(|e| *e > 0.0).unwrap_or(1.0);
     let (w, h) = (extent(0), extent(1));
     let texts = [w, h].map(|length_m| format_si(length_m, &set.display, 4));
@@ -143,8 +160,23 @@ pub(super) fn draw(set: &PartSet, size: SceneSize, title: &str, caption: &str) -
     canvas.finish(size.width, height + 4.0, title, format!("{caption} {}", words(set)).trim())
 }
 
-/// What is between the boundaries of a part, and its centre line.
+/// What is between the boundaries of a part, or its wire, and its centre line.
 fn body(canvas: &mut Canvas, placer: &mut Placer, part: &Shown, view: &View) {
+    if let Some(wire) = &part.wire {
+        wire.draw(canvas, placer, view.scale, |p| view.at(p));
+    } else {
+        between(canvas, placer, part, view);
+    }
+    if let Some(axis) = part.axis {
+        let dashes = r#"stroke-dasharray="12 3 2 3""#;
+        canvas.open_stroke(Paint::Muted, 1.0, dashes);
+        canvas.segments(&[axis.map(|p| view.at(p))], "");
+        canvas.close();
+    }
+}
+
+/// What is between the boundaries of a part.
+fn between(canvas: &mut Canvas, placer: &mut Placer, part: &Shown, view: &View) {
     let mut d = String::new();
     for profile in &part.boundaries {
         let at: Vec<[f64; 2]> = profile.tessellate(CHORD / view.scale).into_iter().map(|p| view.at(p)).collect();
@@ -157,12 +189,6 @@ fn body(canvas: &mut Canvas, placer: &mut Placer, part: &Shown, view: &View) {
     }
     let paint = Paint::fill_and_stroke(Paint::Body, Paint::Ink);
     canvas.raw(&format!(r#"<path d="{d}" {paint} fill-rule="evenodd" stroke-width="1" stroke-linejoin="round"/>"#));
-    if let Some(axis) = part.axis {
-        let dashes = r#"stroke-dasharray="12 3 2 3""#;
-        canvas.open_stroke(Paint::Muted, 1.0, dashes);
-        canvas.segments(&[axis.map(|p| view.at(p))], "");
-        canvas.close();
-    }
 }
 
 /// The width below (`k` 0) or the height on the left (`k` 1), between lower left and upper right corner.
@@ -200,6 +226,11 @@ fn words(set: &PartSet) -> String {
         Body::Turned(turned) => {
             let [diameter, length] = [2.0 * turned.largest_radius_m(), turned.length_m()].map(|m| shown(m, &set.display));
             format!("{}: diameter {diameter}, {length} long, {}.", part.name, count(turned.sections.len(), "section"))
+        }
+        Body::Coil(coil) => {
+            let [wire, diameter, length] = [coil.wire_m, coil.outer_diameter_m(), coil.length_m()].map(|m| shown(m, &set.display));
+            let turns = format_number(coil.turns(), 4);
+            format!("{}: wire {wire}, diameter {diameter}, {length} long, {turns} turns.", part.name)
         }
     };
     set.parts.iter().map(one).collect::<Vec<_>>().join(" ")
