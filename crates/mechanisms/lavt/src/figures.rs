@@ -141,6 +141,7 @@ pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measure
     }
     all.push(characteristic_figure(design, behaviour, measured));
     all.push(efficiency_figure(design, behaviour));
+    all.push(modes_figure(design, behaviour));
     all.extend(margins_figure(design, behaviour));
     let caption = "The turns off the hub open with the torque; those on the hub do not. To scale.";
     all.push(figure("spring", "Spring between hub and bore", caption.to_owned(), FigureContent::Film(scene::spring(design, behaviour))));
@@ -215,6 +216,36 @@ fn efficiency_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     let caption =
         "Between the modes nothing turns, and there is no efficiency. In mode II the slip on the hub costs the same torque at any load.";
     figure("efficiency", "Efficiency over torque at the output", caption.to_owned(), FigureContent::Plot(plot))
+}
+
+/// Mode diagram: which mode, over friction and torque at the input, the output loaded as at the shift.
+fn modes_figure(design: &Design, behaviour: &Behaviour) -> Figure {
+    let top_nm = top_nm(design, &behaviour.statics);
+    let mus: Vec<f64> = (1..FRICTIONS).map(|i| MOST_FRICTION * i as f64 / (FRICTIONS - 1) as f64).collect();
+    let all: Vec<Statics> =
+        mus.iter().map(|mu| Statics::new(&design.built, &behaviour.clutch, [*mu; 2], behaviour.train.mesh_loss())).collect();
+    let line = |label: &str, stroke: Stroke, y: &dyn Fn(&Statics) -> Option<f64>| {
+        let (x, y) = mus.iter().zip(&all).filter_map(|(mu, s)| Some((*mu, y(s)?))).filter(|(_, nm)| *nm <= top_nm).unzip();
+        Series { label: label.to_owned(), x, y, stroke }
+    };
+    let lines = vec![
+        line("above: slips on the hub before it shifts", Stroke::Limit, &|s| s.grip_nm.is_none().then(|| s.transition_input_nm())),
+        line("above: blocked", Stroke::Second, &|s| s.grip_nm.map(|_| s.transition_input_nm())),
+        line("above: mode II", Stroke::Main, &|s| s.grip_nm.map(|_| s.plateau_end_nm(s.transition_output_nm()))),
+        line("above: slips in the bore", Stroke::Third, &|s| s.grip_nm.map(|_| s.held_input_nm())),
+    ];
+    let x = axis("friction", "Friction μ of hub and bore", Dimension::Ratio, &number());
+    let mut plot = plot(x, input_axis(design), lines.into_iter().filter(|l| !l.x.is_empty()).collect());
+    if let Some(required) = &design.requirements {
+        let label = format!("there is {}", format_si(required.input_nm, &design.units.torque, 4));
+        plot.levels.push(HorizontalLine { at: required.input_nm, label, stroke: Stroke::Reference });
+    }
+    let [[low, _], [high, _]] = design.frictions();
+    if low < high {
+        plot.spans.push(VerticalSpan { from: low, to: high, label: "range of friction".to_owned() });
+    }
+    let caption = "Below the lowest line mode I. Between blocked and mode II the output is loaded as at the shift; with more load mode II begins later.";
+    figure("modes", "Modes over friction and torque", caption.to_owned(), FigureContent::Plot(plot))
 }
 
 /// What friction does: where the clutch shifts, and what it holds.
