@@ -10,6 +10,7 @@
 //! | `h_aP`, `h_fP`, `ρ_fP` | `Rack::addendum`, `dedendum`, `root_radius` | modules |
 //! | r, `r_b`, `r_a`, `r_f` | `reference_radius_m`, `base_radius_m`, `tip_radius_m`, `root_radius_m` | m |
 
+mod corner;
 mod fillet;
 pub mod interference;
 mod mesh;

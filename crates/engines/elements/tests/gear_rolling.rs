@@ -8,7 +8,8 @@ use forcewright_base::maths::{acos, atan2, cos, sin, sin_cos, tan};
 use forcewright_base::roots;
 use forcewright_curves::plane::PlaneCurve;
 use forcewright_curves::vector::{Vector, add, cross, norm, rotate, scale, sub};
-use forcewright_elements::gears::{Kind, Piece, Rack, Region, ReliefShape, TipRelief, ToothProfile, Wheel, WheelSpec, involute};
+use forcewright_elements::gears::interference::corner_rooms_m;
+use forcewright_elements::gears::{Kind, Mesh, Piece, Rack, Region, ReliefShape, TipRelief, ToothProfile, Wheel, WheelSpec, involute};
 
 mod rack;
 
@@ -389,6 +390,53 @@ fn tangent_length_m(radius: f64, tooth: &ToothProfile) -> f64 {
     (radius * radius - tooth.wheel().base_radius_m * tooth.wheel().base_radius_m).sqrt()
 }
 
+/// Whether a margin of tip corners in fillets is below 0.
+fn corners_foul(pair: &Pair) -> bool {
+    let mesh = Mesh::new(*pair.one.wheel(), *pair.two.wheel(), pair.apart_m).unwrap();
+    corner_rooms_m(&mesh).into_iter().flatten().any(|room_m| room_m < -TOUCHING_M)
+}
+
+/// Corners in fillets with long teeth, teeth outside and in a ring, bottom clearance left: drawn teeth overlap where a margin is below 0, and by
+/// about as much. In some of these pairs the tips keep clear of the form circles.
+#[test]
+fn corners_overlap_fillets_where_the_margin_says() {
+    let (mut clean, mut foul, mut hidden) = (0, 0, 0);
+    for (kind, teeth, shifts, addendum, root_radius) in [
+        (Kind::External, [16, 24], [0.5, 1.0], 1.0, 0.38),
+        (Kind::External, [16, 24], [0.5, 1.0], 0.9, 0.38),
+        (Kind::External, [24, 24], [0.8, 0.8], 1.0, 0.38),
+        (Kind::External, [23, 35], [0.78, 0.8], 1.0, 0.38),
+        (Kind::External, [30, 60], [0.3, 0.2], 1.2, 0.1),
+        (Kind::External, [30, 60], [0.3, 0.2], 1.1, 0.1),
+        (Kind::Internal, [31, 74], [-0.077, 0.056], 1.216, 0.208),
+        (Kind::Internal, [31, 74], [-0.077, 0.056], 1.15, 0.208),
+        (Kind::Internal, [33, 88], [0.609, 1.068], 1.245, 0.285),
+        (Kind::Internal, [41, 102], [0.484, 0.854], 1.227, 0.251),
+        (Kind::Internal, [56, 101], [0.809, 1.406], 1.296, 0.0515),
+        (Kind::Internal, [40, 100], [0.5, 0.9], 1.0, 0.25),
+    ] {
+        let rack = Rack { addendum, root_radius, ..Rack::ISO_53_A };
+        let thinning_m = 0.05 * MODULE_M;
+        let make = |kind, i: usize| tooth(WheelSpec { rack, thinning_m, ..spec(kind, teeth[i], shifts[i]) });
+        let pair = Pair { one: make(Kind::External, 0), two: make(kind, 1), apart_m: without_backlash_m(kind, teeth, shifts) };
+        let mesh = Mesh::new(*pair.one.wheel(), *pair.two.wheel(), pair.apart_m).unwrap();
+        assert!(mesh.bottom_clearances_m().into_iter().all(|room_m| room_m > 0.0), "{kind:?} {teeth:?} {shifts:?}");
+        let least_m = corner_rooms_m(&mesh).into_iter().flatten().fold(f64::INFINITY, f64::min);
+        let deepest_m = pair.deepest_m(6.0 * MODULE_M);
+        assert_eq!(deepest_m > TOUCHING_M, least_m < -TOUCHING_M, "{kind:?} {teeth:?} {addendum}: {deepest_m:e} {least_m:e}");
+        let path = mesh.path();
+        let on_the_line = path.tips.start_m < path.forms.start_m || path.tips.end_m > path.forms.end_m;
+        if least_m < -TOUCHING_M {
+            assert!((0.5..2.0).contains(&(-least_m / deepest_m)), "{kind:?} {teeth:?} {addendum}: {deepest_m:e} {least_m:e}");
+            foul += 1;
+            hidden += u32::from(!on_the_line);
+        } else {
+            clean += 1;
+        }
+    }
+    assert!(clean >= 4 && foul >= 7 && hidden >= 4, "{clean} {foul} {hidden}");
+}
+
 /// A tip that reaches below the form circle of its mate cuts into the fillet: a sin `α_w` − √(`r_a2²` − `r_b2²`) against the w at which the mate's
 /// involute begins. A tip that stays above the straight part of the rack does not. Between the two the form circle is passed by no contact of
 /// flanks, and yet the corner of the tip, deepest on the line of centres, may cut into the fillet: the form circle alone does not tell.
@@ -411,6 +459,8 @@ fn tips_overlap_fillets_where_the_formula_says() {
             let straight = 1.25 - 0.38 * (1.0 - sin(ALPHA)) - shifts[0];
             let depth = tip_m - (apart_m - 0.5 * f64::from(teeth[0]) * MODULE_M);
             let overlaps = pair.deepest_m(5.0 * MODULE_M) > TOUCHING_M;
+            // The margin of the corner tells in all three cases.
+            assert_eq!(overlaps, corners_foul(&pair), "{teeth:?} {addendum}");
             if reach < form {
                 assert!(overlaps, "{teeth:?} {addendum}");
                 foul += 1;
@@ -478,6 +528,7 @@ fn tips_of_rings_overlap_roots_of_pinions_where_the_formula_says() {
             assert!(form > 0.0, "{teeth:?}");
             let deepest = pair.deepest_m(6.0 * MODULE_M);
             assert_eq!(deepest > TOUCHING_M, reach < form, "{teeth:?} {addendum}: {deepest:e}, {reach} {form}");
+            assert_eq!(deepest > TOUCHING_M, corners_foul(&pair), "{teeth:?} {addendum}");
             if reach < form { foul += 1 } else { clean += 1 }
         }
     }

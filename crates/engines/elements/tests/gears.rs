@@ -84,7 +84,7 @@ fn unshifted_lavt() {
     near(interference::trochoid_rad(&inner).unwrap(), 0.016_424_442_255_430_716, 1e-12);
     near(interference::trimming_rad(&inner), 0.024_402_716_331_438_2, 1e-12);
     let failing: Vec<Condition> = interference::mesh_margins(&inner, 0.25 - 1e-12).filter(|m| !m.holds()).map(|m| m.condition).collect();
-    assert_eq!(failing, [Condition::PinionInterference, Condition::PinionFillet]);
+    assert_eq!(failing, [Condition::PinionInterference, Condition::PinionFillet, Condition::PinionCorner]);
     let undercut = interference::wheel_margins(&sun, 0.2).find(|m| m.condition == Condition::Undercut).unwrap();
     near(undercut.value, -0.298_133_329_356_934, 1e-12);
 }
@@ -331,6 +331,15 @@ fn faults_are_named() {
     let Err(GearError::PointedTooth { radius_m }) = interference::check_tip(&pointed) else { panic!("it is pointed") };
     near(pointed.tooth_angle_rad(radius_m), 0.0, 1e-12);
     assert!(radius_m < pointed.tip_radius_m);
+    // No stress in what is no tooth.
+    for (kind, teeth, shift, addendum) in
+        [(External, 8, 0.9, 1.0), (External, 8, 3.0, 1.0), (External, 12, 10.0, 1.0), (Internal, 200, 1.0, 2.4)]
+    {
+        let none = Wheel::new(WheelSpec { rack: Rack { addendum, ..Rack::ISO_53_A }, ..spec(kind, teeth, shift) }).unwrap();
+        let Err(GearError::PointedTooth { radius_m }) = tooth_root(&none) else { panic!("{teeth} {shift}") };
+        near(none.tooth_angle_rad(radius_m), 0.0, 1e-9);
+        assert!(bending_stress_pa(&none, 1.0, 1.0).is_err());
+    }
     let steel = Solid { young_modulus_pa: 206e9, poisson_ratio: 0.3 };
     let mesh = Mesh::without_backlash(gear, ring).unwrap();
     assert!(flank_pressure(&mesh, f64::NAN, 1.0, [steel; 2]).is_err());
@@ -432,6 +441,21 @@ proptest! {
         let under = form - 0.02;
         if under > gear.base_radius_m {
             prop_assert!(cut_rad(&spec, under) > flank(under) + 1e-5);
+        }
+    }
+
+    /// Whatever the gear: a form factor above 0 or an error.
+    #[test]
+    fn form_factors_are_positive(teeth in 4..200u32, shift in -3.0..12.0_f64, short in 0.0..2.0_f64, ring: bool, radius in 0.0..0.4_f64) {
+        let kind = if ring { Internal } else { External };
+        let rack = Rack { root_radius: radius, ..Rack::ISO_53_A };
+        let Ok(gear) = Wheel::new(WheelSpec { rack, tip_shortening: short, ..spec(kind, teeth, shift) }) else { return Ok(()) };
+        match tooth_root(&gear) {
+            Ok(root) => prop_assert!(root.form_factor > 0.0 && root.form_factor.is_finite() && interference::check_tip(&gear).is_ok()),
+            Err(error) => {
+                let named = matches!(error, GearError::PointedTooth { .. } | GearError::Value { .. });
+                prop_assert!(named, "{error}");
+            }
         }
     }
 

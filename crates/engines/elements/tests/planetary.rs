@@ -3,13 +3,19 @@
 use std::f64::consts::PI;
 
 use forcewright_base::maths;
+use forcewright_curves::vector::rotate;
 use forcewright_elements::gears::interference::{self, Condition};
 use forcewright_elements::gears::planetary::{Member, PlanetarySet, Teeth, TeethSearch, Train};
 use forcewright_elements::gears::shift::{Place, ShiftError, ShiftWanted, ShiftedSet};
 use forcewright_elements::gears::strength::{SetLoad, bending_stress_pa, flank_pressure, set_stresses};
-use forcewright_elements::gears::{GearError, Kind, Mesh, Rack, Wheel, WheelSpec};
+use forcewright_elements::gears::{GearError, Kind, Mesh, Rack, ToothProfile, Wheel, WheelSpec, involute};
 use forcewright_elements::hertz::Solid;
 use proptest::prelude::*;
+
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod rack;
+
+use rack::rolled_past_rack_m;
 
 fn near(ours: f64, exact: f64, absolute: f64) {
     assert!((ours - exact).abs() <= absolute, "{ours} instead of {exact}");
@@ -150,6 +156,23 @@ fn searches_for_teeth() {
     assert!(raw().sets().filter(|set| set.teeth == Teeth::standard(12, 18)).all(|set| set.gap > 1.2));
 }
 
+/// One planet has no neighbour; numbers at the end of their range are no fault.
+#[test]
+fn searches_at_the_edge() {
+    let one = TeethSearch { planets: 1..=1, least_gap: 0.0, ..raw() };
+    assert_eq!(one.sets().count(), 15 * 51);
+    assert!(one.sets().all(|set| set.gap.is_infinite() && set.gap > 0.0));
+    assert_eq!(TeethSearch { planets: 0..=0, ..raw() }.sets().count(), 0);
+    let top = u32::MAX;
+    assert_eq!(Teeth::standard(top, top).ring, top);
+    assert_eq!(Teeth::standard(12, top / 2 + 1).ring, top);
+    let huge = TeethSearch { sun: top - 1..=top, planet: top - 1..=top, excess: i32::MIN..=i32::MIN, ..raw() };
+    assert_eq!(huge.sets().count(), 0);
+    assert_eq!(TeethSearch { sun: 10..=10, planet: top / 2..=top / 2, ..raw() }.sets().count(), 0);
+    let many = Teeth { sun: top, planet: 10, ring: top };
+    near(many.nearest_places_rad(top).nth(1).unwrap() / (2.0 * PI), 1.0 / f64::from(top), 1e-15);
+}
+
 /// Butin et al. (2023) with R = 1/5: modes I and II of a transmission that shifts by its load.
 #[test]
 fn two_speeds_of_the_lavt() {
@@ -174,7 +197,7 @@ fn two_speeds_of_the_lavt() {
     assert!(lossy.reduced(0.0, 1.0).is_err() && lossy.reduced(1.0, f64::NAN).is_err());
 }
 
-/// Efficiencies with each shaft held, as printed for a negative basic ratio by Müller (1982).
+/// Efficiencies with each shaft held, in closed form from the balance of torques and of the power that rolls (a negative basic ratio).
 #[test]
 fn efficiency_of_every_mode() {
     use Member::{Carrier, Ring, Sun};
@@ -264,6 +287,76 @@ fn check_anew(wanted: &ShiftWanted, shifted: &ShiftedSet) {
         assert!(a * maths::sin(PI / f64::from(wanted.planets)) >= tips[1], "neighbours");
     }
     assert!(fouling_rad(a, [zp, zr], [tips[1], tips[2]], [base[1], base[2]], [xp, xr], alpha) > -1e-6, "trochoid");
+    for (mesh, gear, mate) in
+        [(set.sun_planet, sun, planet), (set.sun_planet, planet, sun), (set.planet_ring, planet, ring), (set.planet_ring, ring, planet)]
+    {
+        let deep_m = corner_depth_m(&mesh, &gear, &mate);
+        assert!(deep_m < 1e-7 * m, "corner: {deep_m} {:?} {:?}", gear.spec, mate.spec);
+    }
+    if wanted.radial_assembly {
+        assert!(trimming([zp, zr], [tips[1], tips[2]], [base[1], base[2]], [xp, xr], alpha) > -1e-6, "trimming");
+    }
+}
+
+/// How deep the tip corner of a mate comes into a gear, its flank in contact, m: into what the rack left, by rolling the rack; into a ring as it
+/// is drawn. Only where the corner is nearer to the root than the reference circle.
+fn corner_depth_m(mesh: &Mesh, gear: &Wheel, mate: &Wheel) -> f64 {
+    let (a, alpha) = (mesh.centre_distance_m, gear.spec.rack.pressure_angle_rad);
+    let base = |w: &Wheel| 0.5 * f64::from(w.spec.teeth) * w.spec.module_m * maths::cos(alpha);
+    let [gear_ring, mate_ring] = [gear, mate].map(|w| w.spec.kind == Kind::Internal);
+    let working = maths::acos(if gear_ring || mate_ring { (base(mate) - base(gear)).abs() } else { base(mate) + base(gear) } / a);
+    let half = |w: &Wheel, radius: f64| {
+        let (z, x) = (f64::from(w.spec.teeth), w.spec.profile_shift);
+        let grows = 2.0 * x * maths::tan(alpha) / z + involute(alpha) - involute(maths::acos((base(w) / radius).min(1.0)));
+        0.5 * PI / z + if w.spec.kind == Kind::Internal { -grows } else { grows } - w.spec.thinning_m / (z * w.spec.module_m)
+    };
+    let at_pitch = |w: &Wheel| half(w, base(w) / maths::cos(working));
+    let tip = if mate_ring {
+        mate.tip_radius_m
+    } else {
+        0.5 * f64::from(mate.spec.teeth) * mate.spec.module_m
+            + (mate.spec.profile_shift + mate.spec.rack.addendum - mate.spec.tip_shortening) * mate.spec.module_m
+    };
+    let drawn = gear_ring.then(|| ToothProfile::new(gear, None).expect("a ring that can be drawn"));
+    let centre = if mate_ring { -a } else { a };
+    let mut deepest = f64::NEG_INFINITY;
+    for k in -100..=100 {
+        // The corner from the pitch point, about the centre of the mate, upwards; the flank of its tooth passes the pitch point at `up` of 0.
+        let corner = f64::from(k) * 0.02 * (mate.spec.module_m / tip).sqrt();
+        let up = corner + half(mate, tip) - at_pitch(mate);
+        let point = if gear_ring {
+            [a + tip * maths::cos(corner), tip * maths::sin(corner)]
+        } else {
+            [centre - centre.signum() * tip * maths::cos(corner), tip * maths::sin(corner)]
+        };
+        let radius = maths::hypot(point[0], point[1]);
+        let beyond = if gear_ring { radius > gear.reference_radius_m } else { radius < gear.reference_radius_m };
+        if !beyond {
+            continue;
+        }
+        // The upper flank of a tooth of the gear passes the pitch point too; above it is a space.
+        let turn = up * f64::from(mate.spec.teeth) / f64::from(gear.spec.teeth) - at_pitch(gear);
+        let deep = match &drawn {
+            None => rolled_past_rack_m(&gear.spec, rotate(point, -turn - PI / f64::from(gear.spec.teeth))),
+            Some(drawn) => {
+                let off = maths::atan2(point[1], point[0]) - turn;
+                drawn.half_angle_rad(radius).map_or(f64::NEG_INFINITY, |tooth| (tooth - off) * radius)
+            }
+        };
+        deepest = deepest.max(deep);
+    }
+    deepest
+}
+
+/// A planet that moves out radially between teeth of the ring: least distance of the corners of their tips, modules.
+fn trimming(z: [f64; 2], tips: [f64; 2], base: [f64; 2], x: [f64; 2], alpha: f64) -> f64 {
+    let half =
+        |k: usize| PI / (2.0 * z[k]) + 2.0 * x[k] * maths::tan(alpha) / z[k] + involute(alpha) - involute(maths::acos(base[k] / tips[k]));
+    let (tooth, space) = (half(0), half(1));
+    (0..2000)
+        .map(|k| f64::from(k) / 2000.0 * PI / 2.0)
+        .map(|turn| tips[1] * maths::sin(turn * z[0] / z[1] + space) - tips[0] * maths::sin(turn + tooth))
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Corner of a planet's full tooth against the full tooth of the ring while both roll, beyond the ring's tip circle, rad.
@@ -290,6 +383,17 @@ fn lavt_is_solved() {
     check_anew(&wanted, &shifted);
     assert!(wanted.margins(&shifted.set).all(|(_, margin)| margin.holds()));
     assert!(shifted.set.sun_planet.pinion.spec.profile_shift >= 0.298);
+    // What the theory page prints.
+    let [sun, planet, ring] =
+        [shifted.set.sun_planet.pinion, shifted.set.planet_ring.pinion, shifted.set.planet_ring.wheel].map(|gear| gear.spec);
+    for (ours, printed) in [(sun.profile_shift, 0.489), (planet.profile_shift, 0.359), (ring.profile_shift, 1.207)] {
+        near(ours, printed, 5e-4);
+    }
+    near(sun.tip_shortening, 0.116, 5e-4);
+    near(planet.tip_shortening, 0.116, 5e-4);
+    near(shifted.contact_ratios[0], 1.20, 5e-3);
+    near(shifted.contact_ratios[1], 1.34, 5e-3);
+    near(shifted.largest_sliding, 2.19, 5e-3);
     assert_eq!(wanted.solve(), Ok(shifted));
     // Without shift, what the theory says fails.
     let spoilt = unshifted(Teeth::standard(12, 18), 3);
@@ -304,6 +408,9 @@ fn lavt_is_solved() {
     let five = ShiftWanted { planets: 5, ..wanted }.solve();
     assert!(matches!(five, Err(ShiftError::Blocked { .. })), "{five:?}");
     assert!(ShiftWanted { planets: 4, ..wanted }.solve().is_ok());
+    // More backlash than a pitch: no such set at all, said without a number.
+    let none = ShiftWanted { backlash_m: 20.0 * wanted.module_m, ..wanted }.solve().unwrap_err().to_string();
+    assert!(!none.contains("inf") && none.contains(&Condition::Coaxial.to_string()), "{none}");
     assert!(matches!(ShiftWanted { backlash_m: f64::NAN, ..wanted }.solve(), Err(ShiftError::Gear(_))));
     assert!(matches!(ShiftWanted { planets: 0, ..wanted }.solve(), Err(ShiftError::Gear(_))));
     let seven = ShiftWanted { planets: 7, ..wanted }.solve().unwrap_err();
@@ -448,6 +555,16 @@ fn sets_need_their_members() {
     assert!(both > 0.9 && both < 1.0);
     let flow = set.train(0.05).unwrap().flow(Member::Carrier, Member::Sun).unwrap();
     near(flow.efficiency, both, 1e-14);
+    // Each mesh must pass something on: the product of two that do not is above 0.
+    let [outer, inner] = [set.sun_planet, set.planet_ring].map(|mesh| mesh.loss_factor());
+    let most = 1.02 / outer.min(inner);
+    assert!(1.0 - most * outer < 0.0 && 1.0 - most * inner < 0.0 && (0.0..1.0).contains(&set.basic_efficiency(most)));
+    assert!(matches!(set.train(most), Err(GearError::Value { name: "friction", .. })));
+    // Teeth that do not touch.
+    let apart = PlanetarySet::at(Mesh::new(sun, planet, 18e-3).unwrap(), ring, 3).unwrap();
+    assert!(apart.sun_planet.path().usable.length_m() < 0.0);
+    assert!(matches!(apart.train(0.1), Err(GearError::Value { name: "contact_ratio", .. })));
+    assert!(matches!(apart.train(0.0), Err(GearError::Value { name: "contact_ratio", .. })));
     let free = Mesh::without_backlash(planet, ring).unwrap();
     near(free.centre_distance_m, 15e-3, 1e-15);
     assert!(interference::form_radius_m(&sun) >= sun.base_radius_m);

@@ -261,6 +261,16 @@ fn limits_of_long_hubs_and_small_gaps() {
     }
 }
 
+/// So many turns and so small a gap that the friction to reach the bore is below what numbers hold: what grips is found all the same.
+#[test]
+fn least_friction_beyond_the_range_of_numbers() {
+    let long = spring(&Dimensions { hub_turns: 1e30, bore_opening_m: 1e-300, ..prototype(0.5, 0.5) }, CORRECTED);
+    assert!(long.least_friction_to_reach().is_some_and(|reach| reach <= 0.0));
+    let torque_nm = 5.0 * long.hub_moment_nm();
+    let friction = long.least_friction_to_grip(torque_nm).expect("a number").expect("the bore grips");
+    near(long.limits(friction).expect("limits").grip_nm.expect("a grip"), torque_nm, 1e-9);
+}
+
 /// (ρ ∓ 1)/ρ: on the hub the exponent is that of the inner radius of the coil, in the bore that of the outer one.
 #[test]
 fn thick_wire_rubs_at_its_surface() {

@@ -83,17 +83,22 @@ impl Behaviour {
         let loss = train.mesh_loss();
         let clutch = clutch(built, design.source).map_err(NoTransmission::Spring)?;
         let statics = Statics::new(built, &clutch, built.friction, loss);
-        let worst = worst_of(design, loss).unwrap_or(statics);
+        let worst = worst_of(design, loss, &statics).unwrap_or(statics);
         let slippery = design.frictions().map(|friction| Statics::new(built, &clutch, friction, loss));
         let grasp = closing::grasp(design, &statics, &clutch);
         Ok(Self { clutch, statics, worst, slippery, train, grasp })
     }
 }
 
-/// The corner that holds the least torque at the input, with the least friction.
-fn worst_of(design: &Design, loss: f64) -> Option<Statics> {
+/// The corner that holds the least torque at the input, with the least friction; one in which the spring is loose on the hub, or in the
+/// bore from the beginning, holds nothing.
+fn worst_of(design: &Design, loss: f64, nominal: &Statics) -> Option<Statics> {
     let [friction, _] = design.frictions();
-    let all = corners(design).filter_map(|built| Some(Statics::new(&built, &clutch(&built, design.source).ok()?, friction, loss)));
+    let nothing = Statics { hub_nm: 0.0, grip_nm: None, lock_nm: 0.0, ..*nominal };
+    let all = corners(design).map(|built| {
+        let spring = clutch(&built, design.source).ok().filter(|_| built.gaps_m().iter().all(|gap_m| *gap_m > 0.0));
+        spring.map_or(nothing, |spring| Statics::new(&built, &spring, friction, loss))
+    });
     // Where the bore is not reached, the ratio of the torques says how far it is from it.
     let rank = |s: &Statics| (s.grip_nm.is_some(), if s.grip_nm.is_some() { s.held_input_nm() } else { s.hub_nm / s.transition_nm });
     all.min_by(|a, b| {

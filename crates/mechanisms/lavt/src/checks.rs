@@ -360,7 +360,7 @@ impl Context<'_> {
         let base = self.base("LAVT018", "returns", "Shifts back when the load is gone", "downshift_torque_output");
         let statics = &self.behaviour.statics;
         let fix = format!(
-            "`τ_b` of at most {}: a smaller hub or a wider bore; else the hand must be driven open to be fast again",
+            "`τ_b` of at most {}: a smaller hub or a wider bore; else it stays slow until the torque at the input is taken away",
             self.torque(statics.transition_nm / (1.0 - statics.ratio))
         );
         let basis = "τ_t/(1 − R) − τ_b, less losses: below it the bore lets go";
@@ -402,7 +402,10 @@ impl Context<'_> {
     /// LAVT014: no interference.
     fn interference(&self) -> Check {
         let base = self.base("LAVT014", "interference", "Teeth do not interfere", "interference_margin");
-        let basis = format!("least of involute, trochoid and trimming interference: {}", self.behaviour.train.tightest());
+        let basis = format!(
+            "least of tips against roots, fillets, flanks and each other, and of what is left of a tip: {}",
+            self.behaviour.train.tightest()
+        );
         let scale = Some(self.design.built.gears.module_m);
         Comparison { limit: Some(0.0), scale, fix: self.shifted(base.value), basis, ..base }.judge()
     }

@@ -72,7 +72,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "LAVT014",
         "Teeth do not interfere",
-        "The least room between flanks, fillets and tips of planet, ring and sun: involute, trochoid and trimming interference. The paper's unshifted 12, 18, 48 teeth meet at the ring. Shift the profiles or shorten the tips.",
+        "The least room between flanks, fillets, roots and tips of planet, ring and sun: involute, trochoid and trimming interference, corners of tips in fillets, bottom clearance; and the thickness of tips and of spaces of the ring, which must not be pointed. The paper's unshifted 12, 18, 48 teeth meet at the ring. Shift the profiles or shorten the tips.",
     ),
     code(
         "LAVT015",
@@ -122,7 +122,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "E0807",
         "Hand or motor that is not complete",
-        "A lever and a table of levers exclude each other; the first column of a table must rise; a voltage must end above zero.",
+        "A lever and a table of levers exclude each other; the first column of a table must rise; a voltage must end above zero; an object must go into the open hand.",
     ),
     code(
         "E0808",
@@ -132,7 +132,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "LAVT018",
         "Shifts back when the load is gone",
-        "In mode II the bore lets go when the output falls below τ_t/(1 − R) − τ_b. If that is below zero, a hand that has grasped stays slow even without load, until it is driven open. A hub that is much tighter than the bore is wide grips well and does this; it is a choice, so the check is advice.",
+        "In mode II the bore lets go when the output falls below τ_t/(1 − R) − τ_b. If that is below zero, a hand that has grasped stays slow even without load while the motor pushes, until the torque at the input falls below that of the shift. A hub that is much tighter than the bore is wide grips well and does this; it is a choice, so the check is advice.",
     ),
     code(
         "LAVT019",

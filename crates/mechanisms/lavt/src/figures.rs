@@ -256,8 +256,9 @@ fn margins_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
     let mus: Vec<f64> = (0..FRICTIONS).map(|i| MOST_FRICTION * i as f64 / (FRICTIONS - 1) as f64).collect();
     let all: Vec<Statics> = mus.iter().map(|mu| at(*mu)).collect();
     let line = |label: &str, stroke: Stroke, y: &dyn Fn(&Statics) -> Option<f64>| {
+        // What is far beyond the torque needed would press everything else to the axis.
         let most_nm = 4.0 * k * required.input_nm;
-        let (x, y) = mus.iter().zip(&all).filter_map(|(mu, s)| Some((*mu, y(s)?.min(most_nm)))).unzip();
+        let (x, y) = mus.iter().zip(&all).filter_map(|(mu, s)| Some((*mu, y(s)?))).filter(|(_, nm)| *nm <= most_nm).unzip();
         Series { label: label.to_owned(), x, y, stroke }
     };
     let x = axis("friction", "Friction μ of hub and bore", Dimension::Ratio, &number());
@@ -286,7 +287,8 @@ fn margins_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
     if low < high {
         plot.spans.push(VerticalSpan { from: low, to: high, label: "range of friction".to_owned() });
     }
-    let mut caption = "What the spring holds, over a friction that is the same on hub and bore.".to_owned();
+    let mut caption =
+        "What the spring holds, over a friction that is the same on hub and bore; lines end at four times the torque needed.".to_owned();
     match behaviour.clutch.least_friction_to_reach() {
         Some(mu) => {
             let _ = write!(caption, " From {} on it reaches the bore;", format_number(mu, 4));

@@ -1,9 +1,9 @@
 //! The planetary gears of a design: whether they run, and what they lose.
 
 use forcewright_base::units::format_number;
-use forcewright_elements::gears::interference::{Condition, Margin, Unit, least_shift, mesh_margins};
+use forcewright_elements::gears::interference::{Condition, Margin, Unit, least_shift, mesh_margins, wheel_margins};
 use forcewright_elements::gears::planetary::{PlanetarySet, Teeth};
-use forcewright_elements::gears::shift::ShiftWanted;
+use forcewright_elements::gears::shift::{Place, ShiftWanted};
 use forcewright_elements::gears::strength::{SetLoad, set_stresses};
 use forcewright_elements::gears::{Kind, Mesh, Wheel, WheelSpec};
 use forcewright_elements::hertz::Solid;
@@ -25,13 +25,13 @@ pub struct Train {
     friction: Option<f64>,
 }
 
-/// The least room between teeth.
+/// The least room between teeth, or of what makes a tooth one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tightest {
     /// m; of conditions that are angles, along the tip circle of the planet.
     pub room_m: f64,
-    /// Mesh with the ring, or with the sun.
-    pub at_ring: bool,
+    /// The gear or mesh.
+    pub place: Place,
     /// What it keeps clear of.
     pub condition: Condition,
 }
@@ -115,26 +115,46 @@ impl Train {
 
     /// The least room in words.
     pub(crate) fn tightest(&self) -> String {
-        format!("here {} of planet and {}", self.tightest.condition, if self.tightest.at_ring { "ring" } else { "sun" })
+        format!("here {} ({})", self.tightest.condition, self.tightest.place)
     }
 }
 
-/// Whether a margin is room between teeth that must not meet.
+/// Whether a margin is room between teeth that must not meet, or of a tooth or space that must not be pointed. Undercut is a metric of its own.
 fn is_interference(margin: &Margin) -> bool {
     use Condition as C;
-    matches!(margin.condition, C::PinionInterference | C::WheelInterference | C::PinionFillet | C::WheelFillet | C::Trochoid | C::Trimming)
+    match margin.condition {
+        C::TipThickness
+        | C::RingRoot
+        | C::RingTip
+        | C::PinionInterference
+        | C::WheelInterference
+        | C::PinionFillet
+        | C::WheelFillet
+        | C::PinionCorner
+        | C::WheelCorner
+        | C::PinionClearance
+        | C::WheelClearance
+        | C::Trochoid
+        | C::Trimming => true,
+        C::Undercut | C::ContactRatio | C::NeighbourGap | C::Assembly | C::Coaxial => false,
+    }
 }
 
 fn tightest(set: &PlanetarySet) -> Tightest {
     let planet_m = set.planet_ring.pinion.tip_radius_m;
-    let of = |mesh, at_ring| {
-        mesh_margins(mesh, 0.0).filter(is_interference).map(move |margin| {
-            let arm_m = if margin.condition.unit() == Unit::Radian { planet_m } else { 1.0 };
-            Tightest { room_m: margin.value * arm_m, at_ring, condition: margin.condition }
+    let meshes = [(Place::PlanetRing, set.planet_ring), (Place::SunPlanet, set.sun_planet)];
+    let wheels = [(Place::Sun, set.sun_planet.pinion), (Place::Planet, set.planet_ring.pinion), (Place::Ring, set.planet_ring.wheel)];
+    let of_meshes = meshes.into_iter().flat_map(|(place, mesh)| mesh_margins(&mesh, 0.0).map(move |margin| (place, margin)));
+    let of_wheels = wheels.into_iter().flat_map(|(place, wheel)| wheel_margins(&wheel, 0.0).map(move |margin| (place, margin)));
+    let none = Tightest { room_m: f64::INFINITY, place: Place::PlanetRing, condition: Condition::Trimming };
+    of_meshes
+        .chain(of_wheels)
+        .filter(|(_, margin)| is_interference(margin))
+        .map(|(place, Margin { condition, value })| {
+            let arm_m = if condition.unit() == Unit::Radian { planet_m } else { 1.0 };
+            Tightest { room_m: value * arm_m, place, condition }
         })
-    };
-    let none = Tightest { room_m: f64::INFINITY, at_ring: true, condition: Condition::Trimming };
-    of(&set.planet_ring, true).chain(of(&set.sun_planet, false)).fold(none, |a, b| if b.room_m < a.room_m { b } else { a })
+        .fold(none, |a, b| if b.room_m < a.room_m { b } else { a })
 }
 
 /// Metrics of the gears, and of the room that the whole takes.
@@ -177,4 +197,41 @@ pub(crate) fn length_m(face_m: f64, turns: f64, wire_m: f64) -> f64 {
 /// Volume of the cylinder of a diameter and a length.
 pub(crate) fn envelope_m3([outer_m, length_m]: [f64; 2]) -> f64 {
     0.25 * std::f64::consts::PI * outer_m * outer_m * length_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use forcewright_elements::gears::Rack;
+
+    fn set_of(teeth: [u32; 3], shifts: [f64; 3], planets: u32) -> PlanetarySet {
+        let wheel = |i: usize| {
+            let kind = if i == 2 { Kind::Internal } else { Kind::External };
+            let (teeth, profile_shift) = (teeth[i], shifts[i]);
+            Wheel::new(WheelSpec { kind, teeth, module_m: 1.0, rack: Rack::ISO_53_A, profile_shift, tip_shortening: 0.0, thinning_m: 0.02 })
+                .expect("a gear")
+        };
+        PlanetarySet::new(wheel(0), wheel(1), wheel(2), planets).expect("a set")
+    }
+
+    /// Tips inside the mate's root circle, with involutes and fillets that keep clear on the line of action; corners that cut into fillets
+    /// beside it; pointed tips.
+    #[test]
+    fn teeth_that_foul_off_the_line_of_action_are_found() {
+        let deep = set_of([15, 21, 59], [0.7, 0.9, 1.225], 2);
+        let bottom_m = deep.sun_planet.bottom_clearances_m()[0];
+        assert!((bottom_m + 0.0425).abs() < 1e-4, "{bottom_m}");
+        let found = tightest(&deep);
+        assert!(found.room_m <= bottom_m && found.place == Place::SunPlanet, "{found:?}");
+        let on_the_line = |margin: &Margin| matches!(margin.condition, Condition::PinionFillet | Condition::WheelFillet);
+        let corner = set_of([16, 24, 66], [0.5, 1.0, 1.264], 2);
+        assert!(mesh_margins(&corner.sun_planet, 0.0).filter(on_the_line).all(|margin| margin.holds()));
+        let found = tightest(&corner);
+        assert!((found.room_m + 0.069).abs() < 1e-3 && found.condition == Condition::WheelCorner, "{found:?}");
+        let pointed = set_of([8, 20, 48], [1.2, 0.0, 0.7], 4);
+        assert!(
+            wheel_margins(&pointed.sun_planet.pinion, 0.0).any(|margin| margin.condition == Condition::TipThickness && !margin.holds())
+        );
+        assert!(tightest(&pointed).room_m < 0.0);
+    }
 }

@@ -163,7 +163,9 @@ impl Measuring for Transmissions {
             "speed_drop" => vec![required.speed_drop.map(|r| at_most(r, "speed_drop", "requirements.speed_drop.max"))],
             "efficiency_max" => vec![required.efficiency.map(|e| at_least(e, "efficiency", "requirements.efficiency.min"))],
             "shift_margin" => vec![Some(at_least(1.0, "shifts", "requirements.limits.shift_margin"))],
+            "shift_margin_low" => vec![Some(at_least(1.0, "shifts_always", "requirements.limits.shift_margin_low"))],
             "input_torque_held" => vec![Some(at_least(required.input_nm, "grips", "requirements.input_torque"))],
+            "input_torque_held_low" => vec![Some(at_least(required.input_nm, "grips_always", "requirements.input_torque"))],
             "spring_safety_factor" => vec![required.safety_factor.map(|s| at_least(s, "wire", "requirements.safety_factor"))],
             _ => Vec::new(),
         };

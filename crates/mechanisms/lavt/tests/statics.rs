@@ -224,3 +224,18 @@ fn grows_with_friction() {
         before = ours;
     }
 }
+
+/// Tolerances at which the spring is loose on the hub, or in the bore from the beginning, hold nothing: they are not passed over.
+#[test]
+fn corners_without_a_spring_are_the_worst() {
+    let set = [
+        "design.spring.inner_diameter=16.4 mm ± 0.6 mm",
+        "design.hub.diameter=16.9 mm",
+        "design.bore.diameter=18.6 mm",
+        "design.friction.hub=0.3 ± 0.03",
+        "design.friction.bore=0.3 ± 0.03",
+    ];
+    let behaviour = Behaviour::of(&design(EXAMPLES[1], &set)).expect("a transmission");
+    assert!(behaviour.statics.grip_nm.is_some(), "as designed it shifts");
+    assert!(behaviour.worst.grip_nm.is_none() && behaviour.worst.hub_nm <= 0.0);
+}

@@ -142,6 +142,15 @@ pub(super) fn form_tangent_m(wheel: &Wheel) -> f64 {
     }
 }
 
+/// Radius where the flanks of a tooth meet, m.
+pub(super) fn pointed_tooth_m(wheel: &Wheel) -> f64 {
+    match wheel.spec.kind {
+        Kind::External => hypot(wheel.base_radius_m, pointed_tangent_m(wheel)),
+        // The teeth of a ring grow outwards: `inv α = −half the angle at the base`.
+        Kind::Internal => wheel.base_radius_m / cos(super::inverse_involute((-wheel.tooth_angle_rad(wheel.base_radius_m) / 2.0).max(0.0))),
+    }
+}
+
 /// Tangent length where the flanks of a tooth of an external gear, or of a space of a ring, meet, m.
 pub(super) fn pointed_tangent_m(wheel: &Wheel) -> f64 {
     let at_base_rad = wheel.tooth_angle_rad(wheel.base_radius_m);
@@ -152,4 +161,48 @@ pub(super) fn pointed_tangent_m(wheel: &Wheel) -> f64 {
     // Flanks of the involute close at `inv α_R = half the angle at the base`.
     let angle_rad = super::inverse_involute((wide_rad / 2.0).max(0.0));
     wheel.base_radius_m * tan(angle_rad)
+}
+
+/// The same fillets are drawn by [`super::profile`], from formulas of its own.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gears::{Rack, ToothProfile, WheelSpec};
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) })]
+
+        /// Ends of involutes and places of fillets, undercut or not.
+        #[test]
+        fn fillets_are_those_that_are_drawn(
+            ring: bool, teeth in 6..120u32, profile_shift in -0.6..1.4_f64, radius in 0.02..0.38_f64, dedendum in 1.0..1.4_f64, degrees in 15.0..25.0_f64,
+            tip_shortening in 0.0..0.3_f64, thin in 0.0..0.1_f64,
+        ) {
+            let module_m = 0.5e-3;
+            let rack = Rack { pressure_angle_rad: degrees.to_radians(), addendum: 1.0, dedendum, root_radius: radius };
+            let kind = if ring { Kind::Internal } else { Kind::External };
+            let spec = WheelSpec { kind, teeth, module_m, rack, profile_shift, tip_shortening, thinning_m: thin * module_m };
+            let Ok(wheel) = Wheel::new(spec) else { return Ok(()) };
+            let Ok(drawn) = ToothProfile::new(&wheel, None) else { return Ok(()) };
+            let form_m = hypot(wheel.base_radius_m, form_tangent_m(&wheel));
+            prop_assert!((form_m / drawn.form_radius_m() - 1.0).abs() < 1e-10, "{} {}", form_m, drawn.form_radius_m());
+            prop_assert_eq!(drawn.is_undercut(), !ring && straight_tangent_m(&wheel) < 0.0);
+            let (trochoid, arc) = (Trochoid::new(&wheel), Arc::new(&wheel));
+            let ends = match (&arc, ring) {
+                (Some(arc), true) => [arc.end_rad(&wheel), 0.0],
+                _ => [trochoid.end(&wheel).0, FRAC_PI_2],
+            };
+            for k in 1..16 {
+                let place = ends[0] + (ends[1] - ends[0]) * f64::from(k) / 16.0;
+                let (radius_m, angle_rad) = match (&arc, ring) {
+                    (Some(arc), true) => arc.point(place),
+                    _ => trochoid.point(place),
+                };
+                let half_rad = drawn.half_angle_rad(radius_m);
+                let own_rad = PI / f64::from(teeth) - angle_rad;
+                prop_assert!(half_rad.is_some_and(|half_rad| (half_rad - own_rad).abs() < 1e-9), "{} {:?} {}", k, half_rad, own_rad);
+            }
+        }
+    }
 }

@@ -7,7 +7,7 @@ use std::fmt;
 use forcewright_base::maths::{acos, asin, sin, sin_cos};
 
 use super::mesh::radius_m;
-use super::{GearError, Kind, Mesh, Wheel, fillet, involute};
+use super::{GearError, Kind, Mesh, Wheel, corner, fillet, involute};
 
 /// What a margin is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,10 +35,14 @@ pub enum Condition {
     PinionInterference,
     /// The tip of the pinion passes the point where the line of action touches the base circle of the external wheel.
     WheelInterference,
-    /// The tip of the wheel meets the fillet of the pinion.
+    /// The tip of the wheel meets the fillet of the pinion on the line of action. Necessary, not sufficient: see [`Condition::PinionCorner`].
     PinionFillet,
-    /// The tip of the pinion meets the fillet of the wheel.
+    /// The tip of the pinion meets the fillet of the wheel on the line of action.
     WheelFillet,
+    /// The corner at the tip of the wheel cuts into the fillet of the pinion, anywhere on its way.
+    PinionCorner,
+    /// The corner at the tip of the pinion cuts into the fillet of the wheel, anywhere on its way.
+    WheelCorner,
     /// The tip of the pinion does not clear the root of the wheel by enough.
     PinionClearance,
     /// The tip of the wheel does not clear the root of the pinion by enough.
@@ -78,6 +82,8 @@ impl Condition {
             Self::WheelInterference => "a sin α' − √(r_a1² − r_b1²)",
             Self::PinionFillet => "ξ of the tip of the wheel − √(r_F1² − r_b1²)",
             Self::WheelFillet => "√(r_F2² − r_b2²) from the tip of the pinion, along the line of action",
+            Self::PinionCorner => "least of R (ψ_corner + ψ(R)) over the way of the wheel's tip corner, along the circle about the pinion",
+            Self::WheelCorner => "least of R (ψ_corner + ψ(R)) over the way of the pinion's tip corner, along the circle about the wheel",
             Self::PinionClearance => "a − r_a1 − r_f2, of a ring r_f2 − a − r_a1, − least",
             Self::WheelClearance => "a − r_a2 − r_f1, of a ring r_a2 − a − r_f1, − least",
             Self::Trochoid => "θ₁ z₁/z₂ + inv α' − inv α_a2 − θ₂",
@@ -94,6 +100,7 @@ impl Condition {
         match self {
             Self::Trochoid => "SDP/SI, Elements of Metric Gear Technology, eqs. (5-6) to (5-8)",
             Self::Trimming => "SDP/SI, Elements of Metric Gear Technology, eqs. (5-9) and (5-10)",
+            Self::PinionCorner | Self::WheelCorner => "geometry; docs/theory/gears.md, eq. (5)",
             Self::NeighbourGap | Self::Assembly | Self::RingRoot | Self::Coaxial => "geometry; docs/theory/gears.md",
             _ => "geometry of the involute; ISO 21771-1",
         }
@@ -111,6 +118,8 @@ impl fmt::Display for Condition {
             Self::WheelInterference => "involute interference at the wheel",
             Self::PinionFillet => "tip of the wheel in the fillet of the pinion",
             Self::WheelFillet => "tip of the pinion in the fillet of the wheel",
+            Self::PinionCorner => "tip corner of the wheel in the fillet of the pinion",
+            Self::WheelCorner => "tip corner of the pinion in the fillet of the wheel",
             Self::PinionClearance => "clearance at the tip of the pinion",
             Self::WheelClearance => "clearance at the tip of the wheel",
             Self::Trochoid => "trochoid interference",
@@ -166,12 +175,12 @@ pub fn tip_thickness_m(wheel: &Wheel) -> f64 {
     wheel.tip_radius_m * wheel.tooth_angle_rad(wheel.tip_radius_m)
 }
 
-/// The gear, if its teeth are not pointed below their tips.
+/// That the teeth are not pointed below their tips.
 ///
 /// # Errors
 /// [`GearError::PointedTooth`]
 pub fn check_tip(wheel: &Wheel) -> Result<(), GearError> {
-    if tip_thickness_m(wheel) >= 0.0 { Ok(()) } else { Err(GearError::PointedTooth { radius_m: pointed_radius_m(wheel) }) }
+    if tip_thickness_m(wheel) >= 0.0 { Ok(()) } else { Err(GearError::PointedTooth { radius_m: fillet::pointed_tooth_m(wheel) }) }
 }
 
 /// Margins of one gear, with the least thickness of its tips (m).
@@ -198,11 +207,14 @@ pub fn mesh_margins(mesh: &Mesh, least_clearance_m: f64) -> impl Iterator<Item =
     let [pinion_m, wheel_m] = mesh.bottom_clearances_m();
     let external = mesh.wheel.spec.kind == Kind::External;
     let margin = |condition, value| Some(Margin::new(condition, value));
+    let [pinion_corner, wheel_corner] = corner_rooms_m(mesh);
     [
         margin(Condition::PinionInterference, path.tips.start_m - path.interference.start_m),
         if external { margin(Condition::WheelInterference, path.interference.end_m - path.tips.end_m) } else { None },
         margin(Condition::PinionFillet, path.tips.start_m - path.forms.start_m),
         margin(Condition::WheelFillet, path.forms.end_m - path.tips.end_m),
+        pinion_corner.map(|value| Margin::new(Condition::PinionCorner, value)),
+        wheel_corner.map(|value| Margin::new(Condition::WheelCorner, value)),
         margin(Condition::PinionClearance, pinion_m - least_clearance_m),
         margin(Condition::WheelClearance, wheel_m - least_clearance_m),
         if external { None } else { trochoid_rad(mesh).map(|value| Margin::new(Condition::Trochoid, value)) },
@@ -210,6 +222,15 @@ pub fn mesh_margins(mesh: &Mesh, least_clearance_m: f64) -> impl Iterator<Item =
     ]
     .into_iter()
     .flatten()
+}
+
+/// Least room between the tip corner of the wheel and the fillet of the pinion, and between that of the pinion and the fillet of the wheel,
+/// along the circle about the gear with the fillet, m. None where the corner does not come as deep as the fillet.
+///
+/// The flank of the corner is in contact, as if the involutes went on beyond the path of contact. A corner that begins contact at the end of
+/// the fillet has a room of 0. The root circle is left to [`Mesh::bottom_clearances_m`]. Derived in `docs/theory/gears.md`, eq. (5).
+pub fn corner_rooms_m(mesh: &Mesh) -> [Option<f64>; 2] {
+    corner::rooms_m(mesh)
 }
 
 /// Tip radius that a mate of the pinion may have before it passes the pinion's interference point, m: the largest of an external wheel, the

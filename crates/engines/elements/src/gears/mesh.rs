@@ -102,7 +102,7 @@ impl Path {
 
     /// Mean of `|ξ − ξ_C|` over the path, each pair carrying an equal share of the load while several touch, m.
     ///
-    /// With less than one pair in contact on average, the mean over the time of contact.
+    /// With less than one pair in contact on average, the mean over the time of contact. 0 if the path is empty.
     pub fn mean_sliding_arm_m(&self) -> f64 {
         let (length_m, pitch_m) = (self.usable.length_m(), self.base_pitch_m);
         if length_m <= 0.0 {
@@ -289,10 +289,19 @@ impl Mesh {
     /// Loss of power over power, per unit of friction coefficient: `H_V = (1 ± 1/u) ⟨|ξ − ξ_C|⟩ / r_b1`, below for a ring.
     ///
     /// Coulomb friction of one coefficient, the load shared equally by the pairs in contact. For a contact ratio of 1 to 2 with the pitch
-    /// point on the path it is `π (u ± 1)/(z₁ u) (1 − ε + ε₁² + ε₂²)`. Niemann and Winter,
-    /// "Maschinenelemente", volume 2; ISO/TR 14179-2.
+    /// point on the path it is `π (u ± 1)/(z₁ u) (1 − ε + ε₁² + ε₂²)`. Derived in `docs/theory/gears.md`, eq. (2); cf. Niemann and Winter,
+    /// "Maschinenelemente", volume 2, and ISO/TR 14179-2.
+    ///
+    /// 0 of gears that do not touch, which says nothing about them: [`super::planetary::PlanetarySet::train`] refuses these.
     pub fn loss_factor(&self) -> f64 {
         (1.0 + self.sign() / self.ratio()) * self.path().mean_sliding_arm_m() / self.pinion.base_radius_m
+    }
+
+    /// That the path of contact is not empty.
+    pub(super) fn check_touches(&self) -> Result<(), GearError> {
+        let path = self.path();
+        let length_m = path.usable.length_m();
+        if length_m > 0.0 { Ok(()) } else { Err(GearError::Value { name: "contact_ratio", value: length_m / path.base_pitch_m }) }
     }
 
     fn sign(&self) -> f64 {

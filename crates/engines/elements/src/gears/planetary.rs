@@ -19,9 +19,9 @@ pub struct Teeth {
 }
 
 impl Teeth {
-    /// The set that is coaxial without profile shift: `z_r = z_s + 2 z_p`.
+    /// The set that is coaxial without profile shift: `z_r = z_s + 2 z_p`; of more teeth than a `u32` holds, the most it holds.
     pub fn standard(sun: u32, planet: u32) -> Self {
-        Self { sun, planet, ring: sun + 2 * planet }
+        Self { sun, planet, ring: sun.saturating_add(planet.saturating_mul(2)) }
     }
 
     /// By how many teeth the ring differs from `z_s + 2 z_p`; profile shift must make up for it.
@@ -51,8 +51,9 @@ impl Teeth {
     pub fn nearest_places_rad(&self, planets: u32) -> impl Iterator<Item = f64> + use<> {
         let places = u64::from(self.sun) + u64::from(self.ring);
         let step_rad = self.place_rad();
-        (0..u64::from(planets)).map(move |k| {
-            let place = (2 * k * places + u64::from(planets)) / (2 * u64::from(planets));
+        (0..planets).map(move |k| {
+            // Beyond 64 bits with the largest numbers of teeth and planets.
+            let place = (2 * u128::from(k) * u128::from(places) + u128::from(planets)) / (2 * u128::from(planets));
             place as f64 * step_rad
         })
     }
@@ -73,7 +74,8 @@ pub struct TeethSearch {
     pub reduction: [f64; 2],
     /// Most teeth of the ring.
     pub most_ring: u32,
-    /// Least distance between the tips of neighbours of standard teeth at the mean centre distance, modules; −∞ to allow all.
+    /// Least distance between the tips of neighbours of standard teeth at the mean centre distance, modules; −∞ to allow all. One planet has
+    /// no neighbours.
     pub least_gap: f64,
     /// Only sets whose planets fit at equal angles.
     pub equal_angles: bool,
@@ -86,7 +88,7 @@ pub struct TeethFound {
     pub teeth: Teeth,
     /// Number of planets.
     pub planets: u32,
-    /// Distance between the tips of neighbours at equal angles, of unshifted teeth with an addendum of one, modules.
+    /// Distance between the tips of neighbours at equal angles, of unshifted teeth with an addendum of one, modules. Infinite for one planet.
     pub gap: f64,
 }
 
@@ -98,7 +100,7 @@ impl TeethSearch {
             .flat_map(move |sun| self.planet.clone().map(move |planet| (sun, planet)))
             .flat_map(move |(sun, planet)| {
                 self.excess.clone().filter_map(move |excess| {
-                    let ring = (sun + 2 * planet).checked_add_signed(excess)?;
+                    let ring = planet.checked_mul(2)?.checked_add(sun)?.checked_add_signed(excess)?;
                     Some(Teeth { sun, planet, ring })
                 })
             })
@@ -111,7 +113,8 @@ impl TeethSearch {
         let mean = (f64::from(teeth.sun) + f64::from(teeth.ring)) / 4.0;
         let gap = gap(mean, planets, f64::from(teeth.planet) / 2.0 + 1.0);
         let reduction = teeth.reduction();
-        let good = teeth.ring <= self.most_ring
+        let good = planets > 0
+            && teeth.ring <= self.most_ring
             && teeth.ring > teeth.planet
             && (self.reduction[0]..=self.reduction[1]).contains(&reduction)
             && gap >= self.least_gap
@@ -120,9 +123,12 @@ impl TeethSearch {
     }
 }
 
-/// Gap between neighbours on a circle; all lengths in one unit.
+/// Gap between neighbours on a circle; all lengths in one unit. Infinite for one planet.
 fn gap(centre_distance: f64, planets: u32, tip_radius: f64) -> f64 {
-    2.0 * centre_distance * sin(PI / f64::from(planets.max(1))) - 2.0 * tip_radius
+    if planets <= 1 {
+        return f64::INFINITY;
+    }
+    2.0 * centre_distance * sin(PI / f64::from(planets)) - 2.0 * tip_radius
 }
 
 /// A sun, equal planets and a ring on one centre distance.
@@ -200,17 +206,29 @@ impl PlanetarySet {
     }
 
     /// Efficiency with the carrier held, of both meshes one after the other: `(1 − μ H_V,sp)(1 − μ H_V,pr)`, from the coefficient of friction
-    /// of the flanks. Bearings and oil are not in it.
+    /// of the flanks. Bearings and oil are not in it. Only [`PlanetarySet::train`] looks whether the teeth touch and each mesh passes power on.
     pub fn basic_efficiency(&self, friction: f64) -> f64 {
-        (1.0 - friction * self.sun_planet.loss_factor()) * (1.0 - friction * self.planet_ring.loss_factor())
+        let [outer, inner] = self.mesh_efficiencies(friction);
+        outer * inner
+    }
+
+    fn mesh_efficiencies(&self, friction: f64) -> [f64; 2] {
+        [&self.sun_planet, &self.planet_ring].map(|mesh| 1.0 - friction * mesh.loss_factor())
     }
 
     /// Its gears as a train with losses.
     ///
     /// # Errors
-    /// [`GearError::Value`] of a coefficient of friction that is negative, not finite, or takes more than all of the power.
+    /// [`GearError::Value`] of an empty path of contact, and of a coefficient of friction that is negative, not finite, or takes all of the
+    /// power of a mesh or more.
     pub fn train(&self, friction: f64) -> Result<Train, GearError> {
         if !(friction >= 0.0 && friction.is_finite()) {
+            return Err(GearError::Value { name: "friction", value: friction });
+        }
+        for mesh in [&self.sun_planet, &self.planet_ring] {
+            mesh.check_touches()?;
+        }
+        if !self.mesh_efficiencies(friction).into_iter().all(|efficiency| efficiency > 0.0) {
             return Err(GearError::Value { name: "friction", value: friction });
         }
         Train::new(self.teeth(), self.basic_efficiency(friction))
@@ -277,7 +295,8 @@ impl Train {
     }
 
     /// Torques on sun, carrier, ring per torque on the sun, when the power that rolls in the meshes flows from the sun to the ring or back:
-    /// `T_r = (z_r/z_s) η₀^w T_s`, `T_c = −T_s − T_r`, w = ±1. H. W. Müller, "Epicyclic Drive Trains", Wayne State University Press 1982.
+    /// `T_r = (z_r/z_s) η₀^w T_s`, `T_c = −T_s − T_r`, w = ±1. Derived in `docs/theory/gears.md`, eq. (7); cf. H. W. Müller, "Epicyclic Drive
+    /// Trains", Wayne State University Press 1982.
     fn torques(&self, sun_to_ring: bool) -> [f64; 3] {
         let ring = self.ratio() * if sun_to_ring { self.basic_efficiency } else { 1.0 / self.basic_efficiency };
         [1.0, -(1.0 + ring), ring]

@@ -25,7 +25,7 @@ use forcewright_base::roots;
 use super::interference::{Condition, Margin, Unit, least_shift, mesh_margins, wheel_margins};
 use super::mesh::tangent_m;
 use super::planetary::{PlanetarySet, Teeth};
-use super::{GearError, Kind, Mesh, Rack, Wheel, WheelSpec, fillet, inverse_involute, involute};
+use super::{GearError, Kind, Mesh, Rack, Wheel, WheelSpec, corner, fillet, inverse_involute, involute};
 
 /// Shifts of external gears that are tried, modules.
 const SHIFTS: [f64; 2] = [-0.8, 1.4];
@@ -130,7 +130,11 @@ fn write_lack(f: &mut fmt::Formatter<'_>, place: Place, margin: &Margin) -> fmt:
         Unit::Radian => " rad",
         Unit::One => "",
     };
-    write!(f, "{} ({place}) misses by {:.3e}{unit}", margin.condition, -margin.value)
+    if margin.value.is_finite() {
+        write!(f, "{} ({place}) misses by {:.3e}{unit}", margin.condition, -margin.value)
+    } else {
+        write!(f, "{} ({place}) is not to be had", margin.condition)
+    }
 }
 
 impl std::error::Error for ShiftError {}
@@ -365,12 +369,14 @@ impl ShiftWanted {
         let straight = |wheel: &Wheel| fillet::straight_tangent_m(wheel).max(0.0);
         let reach = |wheel: &Wheel, tangent_m: f64| hypot(wheel.base_radius_m, tangent_m.max(0.0));
         let ring_form_m = fillet::form_tangent_m(ring);
+        let sun_m = (centre_m - planet.root_radius_m - clearance_m).min(reach(sun, outer_m - straight(planet)));
+        let planet_m = (centre_m - sun.root_radius_m - clearance_m)
+            .min(ring.root_radius_m - centre_m - clearance_m)
+            .min(reach(planet, outer_m - straight(sun)))
+            .min(reach(planet, ring_form_m - inner_m));
         [
-            (centre_m - planet.root_radius_m - clearance_m).min(reach(sun, outer_m - straight(planet))),
-            (centre_m - sun.root_radius_m - clearance_m)
-                .min(ring.root_radius_m - centre_m - clearance_m)
-                .min(reach(planet, outer_m - straight(sun)))
-                .min(reach(planet, ring_form_m - inner_m)),
+            corner_limit_m(planet, sun, sun_m, centre_m, outer_rad),
+            corner_limit_m(sun, planet, planet_m, centre_m, outer_rad),
             (centre_m + planet.root_radius_m + clearance_m).max(reach(ring, inner_m + straight(planet))),
         ]
     }
@@ -426,6 +432,31 @@ enum Outcome {
         lacking: f64,
         against: Option<(Place, Margin)>,
     },
+}
+
+/// Largest tip radius of an external gear within a limit (m) whose corner stays out of the fillet of an external mate, m.
+///
+/// To 1e-4 modules, on the good side. Where the corner comes no deeper than the straight part of the rack it is taken to clear; if it does not,
+/// the margin says so.
+fn corner_limit_m(mate: &Wheel, gear: &Wheel, limit_m: f64, centre_m: f64, working_rad: f64) -> f64 {
+    const HALVINGS: u32 = 12;
+    let most_m = limit_m.min(gear.tip_radius_m);
+    let clears = |tip_radius_m: f64| {
+        let short = Wheel { tip_radius_m, ..*gear };
+        corner::room_m(mate, &short, centre_m, working_rad).is_none_or(|room_m| room_m >= 0.0)
+    };
+    let rack = mate.spec.rack;
+    let rounded_m = (rack.dedendum - fillet::straight_depth(mate)) * mate.spec.module_m;
+    let mut good_m = centre_m - mate.root_radius_m - rounded_m;
+    if good_m >= most_m || clears(most_m) {
+        return limit_m;
+    }
+    let mut bad_m = most_m;
+    for _ in 0..HALVINGS {
+        let middle_m = 0.5 * (good_m + bad_m);
+        if clears(middle_m) { good_m = middle_m } else { bad_m = middle_m }
+    }
+    good_m
 }
 
 /// The second if it is better.

@@ -11,7 +11,7 @@ use forcewright_base::roots;
 
 use super::fillet::{Arc, Trochoid};
 use super::planetary::PlanetarySet;
-use super::{GearError, Kind, Mesh, Wheel};
+use super::{GearError, Kind, Mesh, Wheel, interference};
 use crate::hertz::{self, Solid};
 
 /// Weakest section of a tooth loaded at its tip.
@@ -32,8 +32,9 @@ pub struct ToothRoot {
 /// Engineers' Club of Philadelphia 10, 1893 (`lewis1893`).
 ///
 /// # Errors
-/// [`GearError::Value`] of a gear whose teeth have no such section.
+/// [`GearError::PointedTooth`]; [`GearError::Value`] of a gear whose teeth have no such section.
 pub fn tooth_root(wheel: &Wheel) -> Result<ToothRoot, GearError> {
+    interference::check_tip(wheel)?;
     let half_pitch_rad = PI / f64::from(wheel.spec.teeth);
     let (tip_rad, half_rad) = (wheel.pressure_angle_rad(wheel.tip_radius_m), wheel.tooth_angle_rad(wheel.tip_radius_m) / 2.0);
     let none = GearError::Value { name: "profile_shift", value: wheel.spec.profile_shift };
@@ -53,6 +54,9 @@ pub fn tooth_root(wheel: &Wheel) -> Result<ToothRoot, GearError> {
     let (thickness_m, height_m) = root.ok_or(none)?;
     let cosines = cos(wheel.spec.rack.pressure_angle_rad) / cos(load_angle_rad);
     let form_factor = thickness_m * thickness_m / (6.0 * height_m * wheel.spec.module_m) * cosines;
+    if !(form_factor > 0.0 && form_factor.is_finite()) {
+        return Err(none);
+    }
     Ok(ToothRoot { thickness_m, height_m, load_angle_rad, form_factor })
 }
 
@@ -112,11 +116,9 @@ pub struct FlankPressure {
 /// [`GearError`], of an empty path of contact too.
 pub fn flank_pressure(mesh: &Mesh, pinion_torque_nm: f64, face_width_m: f64, solids: [Solid; 2]) -> Result<FlankPressure, GearError> {
     check_load(pinion_torque_nm, face_width_m)?;
+    mesh.check_touches()?;
     let path = mesh.path();
     let (start_m, end_m) = (path.usable.start_m, path.usable.end_m);
-    if path.usable.length_m().is_nan() || path.usable.length_m() <= 0.0 {
-        return Err(GearError::Value { name: "contact_ratio", value: path.usable.length_m() / path.base_pitch_m });
-    }
     let load_n_per_m = pinion_torque_nm / mesh.pinion.base_radius_m / face_width_m;
     let pressure_pa = |xi_m: f64| {
         let [pinion_m, wheel_m] = mesh.curvature_radii_m(xi_m);

@@ -161,7 +161,8 @@ impl WrapSpring {
         if self.bore_exponent <= 0.0 && self.hub_moment_nm - self.transition_nm <= excess_nm {
             return None;
         }
-        let mut high = 2.0 * reach;
+        // `reach` may be 0 by underflow.
+        let mut high = (2.0 * reach).max(1e-6);
         while beyond(high) <= 0.0 {
             high *= 2.0;
             if !high.is_finite() {

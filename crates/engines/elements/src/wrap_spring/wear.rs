@@ -12,7 +12,8 @@ pub struct HubWear {
     pub work_j: f64,
     /// Worn volume by Archard's law, m³.
     pub volume_m3: f64,
-    /// Depth under the outermost turn, where the pressure is largest, m.
+    /// Depth under a turn in uniform contact next to the free end, where the pressure of such contact is largest, m. The point force with which
+    /// the end itself presses is not in it.
     pub depth_m: f64,
 }
 
@@ -35,9 +36,10 @@ impl WrapSpring {
     /// Wear of the hub after slip by an angle (rad, at least 0) in the opening sense at a coefficient of friction above 0.
     ///
     /// Archard's law `V = k F s` (`archard1953`), with `k` in m²/N (the dimensional coefficient, over hardness). The coil presses with
-    /// `∫p ds = τ_b/(μ r)`, hence `V = k τ_b φ/μ`. It presses most at its free end, with `M_A/r²` over length; each point of the hub under
-    /// that turn is rubbed over `r φ`, and over the width of the track (m): `k M_A φ/(r w)`. The track is the width of contact, at most the
-    /// pitch.
+    /// `∫p ds = τ_b/(μ r)`, hence `V = k τ_b φ/μ`. Uniform contact presses most next to the free end, with `M_A/r²` over length; each point of
+    /// the hub under that turn is rubbed over `r φ`, and over the width of the track (m): `k M_A φ/(r w)`. The track is the width of contact, at
+    /// most the pitch. The free end presses with a point force of `1.19 M_A/r` besides (`docs/theory/wrap-spring.md`, Ends), which rubs a
+    /// groove of its own and is not in the depth.
     ///
     /// # Errors
     /// [`WrapSpringError::Value`]
@@ -82,7 +84,8 @@ impl WrapSpring {
         })
     }
 
-    /// Largest force of the coil on the hub over its length, at the free end, N/m: `M_A/r²`. What presses in [`crate::hertz`].
+    /// Largest force of the coil on the hub over its length under uniform contact in the opening sense, next to the free end, N/m: `M_A/r²`.
+    /// What presses in [`crate::hertz`]. The free end itself presses with a point force of `1.19 M_A/r`: `docs/theory/wrap-spring.md`, Ends.
     pub fn hub_load_n_per_m(&self) -> f64 {
         self.hub_moment_nm / (self.hub_radius_m() * self.hub_radius_m())
     }

@@ -148,6 +148,9 @@ pub(super) fn hand_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Hand
     let place = spec.hand.present.as_ref()?.span;
     let typed = &spec.hand;
     let table = points(&typed.lever_table, "the opening", diagnostics);
+    if typed.lever_table.is_some() && table.is_none() {
+        return None;
+    }
     let lever = match (table, si(&typed.lever)) {
         (Some(points), None) => Lever::Table(points),
         (None, Some(lever_m)) => Lever::Constant(lever_m),
@@ -158,6 +161,16 @@ pub(super) fn hand_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Hand
             return None;
         }
     };
+    if let (Some(opening_m), Some(width)) = (si(&typed.opening), &typed.object_width)
+        && width.value.si >= opening_m
+    {
+        let error = Diagnostic::error("E0807", width.span, "the object does not go into the open hand").label("this width");
+        diagnostics.push(error.help(format!(
+            "the opening is {}: choose a smaller object, or open wider",
+            typed.opening.as_ref().map_or_else(String::new, |o| o.value.to_string())
+        )));
+        return None;
+    }
     Some(Hand {
         lever,
         reduction: si(&typed.reduction)?,
