@@ -1,5 +1,6 @@
 //! Studies of designs: they see numbers in and numbers out, never a mechanism.
 
+pub mod calibrate;
 pub mod differences;
 pub mod evaluator;
 pub mod nlp;

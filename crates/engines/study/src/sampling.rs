@@ -27,7 +27,7 @@ mod yields;
 pub use correlation::{Correlation, CorrelationError};
 pub use distribution::{Distribution, DistributionError, Form, SIGMAS_IN_TOLERANCE};
 pub use fan::{Fan, Station};
-pub use interval::{Confidence, Estimate, Interval, clopper_pearson, fisher, student, wilson};
+pub use interval::{Confidence, Estimate, Interval, clopper_pearson, fisher, fisher_tail, student, wilson};
 pub use linear::{Contribution, JointPlan, LinearError, LinearModel};
 pub use population::{Population, PopulationError};
 pub use sensitivity::{SensitivityError, SensitivityPlan, SensitivityTally, SobolIndices};

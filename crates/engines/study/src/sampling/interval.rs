@@ -90,6 +90,13 @@ pub fn fisher(numerator: f64, denominator: f64, confidence: Confidence) -> f64 {
     denominator * (1.0 - y) / (numerator * y)
 }
 
+/// Probability that Fisher's ratio exceeds `ratio`, for degrees of freedom of numerator and denominator above 0; 1 below 0.
+///
+/// `P(F > f) = I_y(ν₂/2, ν₁/2)` with `y = ν₂ / (ν₂ + ν₁ f)` (Abramowitz & Stegun, section 26.6).
+pub fn fisher_tail(ratio: f64, numerator: f64, denominator: f64) -> f64 {
+    beta::incomplete(0.5 * denominator, 0.5 * numerator, denominator / (denominator + numerator * ratio.max(0.0)))
+}
+
 /// Interval of the probability behind `hits` of `trials` that is never too confident: C. J. Clopper and E. S. Pearson, Biometrika
 /// 26(4), 404–413, 1934, as quantiles of the beta distribution (L. D. Brown, T. T. Cai, A. `DasGupta`, "Interval estimation for a
 /// binomial proportion", Statistical Science 16(2), 101–133, 2001, section 4.2.1). No trial: [0, 1].
@@ -167,6 +174,21 @@ mod tests {
             let f = fisher(2.0, degrees, p99);
             assert!((exp(-0.5 * degrees * ln(1.0 + 2.0 * f / degrees)) / 0.01 - 1.0).abs() < 1e-11, "{degrees}");
         }
+    }
+
+    /// Tables of Abramowitz & Stegun, 26.9; with two degrees above a closed form, `(1 + 2f/ν)^(−ν/2)`; with one, Student's.
+    #[test]
+    fn fisher_tails() {
+        for (above, below, at_5, at_1) in [(3.0, 10.0, 3.71, 6.55), (5.0, 20.0, 2.71, 4.10), (10.0, 4.0, 5.96, 14.55)] {
+            assert!((fisher_tail(at_5, above, below) - 0.05).abs() < 2e-4, "{above} {below}");
+            assert!((fisher_tail(at_1, above, below) - 0.01).abs() < 1e-4, "{above} {below}");
+        }
+        for degrees in [1.0, 3.0, 12.0, 100.0] {
+            let t = student(degrees, Confidence::P95);
+            assert!((fisher_tail(t * t, 1.0, degrees) / 0.05 - 1.0).abs() < 1e-11, "{degrees}");
+            assert!((fisher_tail(3.0, 2.0, degrees) / exp(-0.5 * degrees * ln(1.0 + 6.0 / degrees)) - 1.0).abs() < 1e-12, "{degrees}");
+        }
+        assert!((fisher_tail(-1.0, 2.0, 3.0) - 1.0).abs() < f64::EPSILON);
     }
 
     /// `SciPy` 1.17.1, `beta.ppf`; the Wilson interval is the pair of roots of `(p̂ − p)² = z² p (1 − p) / n`.

@@ -1,0 +1,8 @@
+//! Estimates of parameters against certified values, exact theory and repeated synthetic measurements.
+
+mod calibrate {
+    mod common;
+    mod coverage;
+    mod nist;
+    mod shapes;
+}
