@@ -68,6 +68,8 @@ pub(crate) fn curves(design: &Design) -> Vec<Curve> {
     let Some(bench) = &design.bench else { return Vec::new() };
     let mut measured: Vec<Branch> = (0..2).filter_map(|mode| branch(bench, MODES[mode], |p| p == Part::Mode(mode))).collect();
     measured.extend(branch(bench, "plateau", |p| p == Part::Plateau));
+    // A single point is no curve; the figure has it.
+    measured.retain(|b| b.x.len() >= 2);
     measured.extend(branch(bench, "neither", |p| p == Part::Neither));
     let mut all = vec![Curve { name: "bench", x: input_axis(design), y: output_axis(design), branches: measured }];
     let fits: Vec<Branch> = (0..2).filter_map(|mode| fitted(bench, mode)).collect();
