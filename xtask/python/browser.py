@@ -207,7 +207,7 @@ def opened(browser, job):
 def wanted_figures(job):
     """The figures that stand beside the report as files; every mechanism has at least its drawing and its force, torque or stiffness."""
     found = {path.stem for path in pathlib.Path(job["file"]).parent.glob("*.svg")}
-    main = next((name for name in ("torque", "force", "stiffness") if name in found), "force")
+    main = next((name for name in ("torque", "force", "stiffness", "characteristic") if name in found), "force")
     return sorted(found | {"mechanism", main})
 
 
