@@ -113,7 +113,7 @@ def check_result(example):
 
 def stands_alone(example):
     """Whether the project is this one file."""
-    return not re.search(r"^\s*extends\s*=|file\s*=", pathlib.Path(example["file"]).read_text("utf-8"), re.M)
+    return not re.search(r"^\s*(?:extends|(?:.*[\s{,])?(?:[\w.]*_)?file)\s*=", pathlib.Path(example["file"]).read_text("utf-8"), re.M)
 
 
 def check_sum(example):

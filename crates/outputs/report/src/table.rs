@@ -98,6 +98,6 @@ mod tests {
         assert!(table(WIDE).contains("<table class=\"data\">") && table(WIDE).starts_with("<div class=\"scroll"));
         assert!(table(WIDE + 1).contains("<table class=\"data wide\">"));
         let css = include_str!("report.css");
-        assert!(css.contains(".scroll {\n  overflow-x: auto;") && css.contains(".wide {"));
+        assert!(css.contains(".scroll { overflow-x: auto;") && css.contains(".wide {"));
     }
 }
