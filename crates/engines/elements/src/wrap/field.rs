@@ -102,25 +102,22 @@ impl Field {
         Front { segment: self.knots.len() - 1, angle_rad: self.wrap_rad, at_end: true }
     }
 
-    /// `∫T dθ/T_p` of a piece of slope `slope · μ` that begins with `log`.
-    fn integral(&self, log: f64, slope: i8, length_rad: f64) -> f64 {
+    /// `∫T dθ` of a piece of slope `slope · μ`, over the tension it begins with, rad.
+    fn reduced(&self, slope: i8, length_rad: f64) -> f64 {
         let rise = f64::from(slope) * self.friction;
-        if slope == 0 { exp(log) * length_rad } else { exp(log) * exp_m1(rise * length_rad) / rise }
+        if slope == 0 { length_rad } else { exp_m1(rise * length_rad) / rise }
     }
 
-    pub(super) fn probe(&self, log: f64) -> Probe {
-        let change = log - self.log_at_span();
-        if change == 0.0 {
-            return Probe { elongation_m: 0.0, per_log_m: 0.0, front_rad: 0.0, at_end: false };
+    /// The wrap, prepared for many candidate tensions at its span.
+    pub(super) fn candidates(&self) -> Candidates<'_> {
+        let mut sum = 0.0;
+        let ratios: Vec<f64> = self.knots.iter().map(|knot| exp(knot.log)).collect();
+        let mut before = Vec::with_capacity(self.knots.len());
+        for (i, (knot, ratio)) in self.knots.iter().zip(&ratios).enumerate() {
+            before.push(sum);
+            sum += ratio * self.reduced(knot.slope, self.end_rad(i) - knot.angle_rad);
         }
-        let sign = change.signum();
-        let front = self.front(log, sign);
-        let scale_m = self.strain_m_per_n * self.preload_n;
-        let new = self.integral(log, against(sign), front.angle_rad);
-        let old: f64 = (0..=front.segment)
-            .map(|i| self.integral(self.knots[i].log, self.knots[i].slope, self.end_rad(i).min(front.angle_rad) - self.knots[i].angle_rad))
-            .sum();
-        Probe { elongation_m: scale_m * (new - old), per_log_m: scale_m * new, front_rad: front.angle_rad, at_end: front.at_end }
+        Candidates { field: self, ratios, before, scale_m: self.strain_m_per_n * self.preload_n }
     }
 
     /// Takes the new tension at the span; returns the energy that friction takes, J.
@@ -188,6 +185,36 @@ impl Field {
             exp(2.0 * knot.log) * if knot.slope == 0 { length_rad } else { exp_m1(rise * length_rad) / rise }
         };
         0.5 * self.strain_m_per_n * self.preload_n * self.preload_n * (0..self.knots.len()).map(squared).sum::<f64>()
+    }
+}
+
+/// A wrap whose old tensions are integrated once, for many candidate tensions at the span.
+#[derive(Clone, Debug)]
+pub(super) struct Candidates<'a> {
+    field: &'a Field,
+    /// `T/T_p` at each knot.
+    ratios: Vec<f64>,
+    /// `∫T dθ/T_p` from the span to each knot, rad.
+    before: Vec<f64>,
+    /// `r T_p/AE`, m.
+    scale_m: f64,
+}
+
+impl Candidates<'_> {
+    /// What a tension at the span does that is `ratio` = exp(`log`) times the preload.
+    pub(super) fn probe(&self, log: f64, ratio: f64) -> Probe {
+        let field = self.field;
+        let change = log - field.log_at_span();
+        if change == 0.0 {
+            return Probe { elongation_m: 0.0, per_log_m: 0.0, front_rad: 0.0, at_end: false };
+        }
+        let sign = change.signum();
+        let front = field.front(log, sign);
+        let knot = field.knots[front.segment];
+        let new = ratio * field.reduced(against(sign), front.angle_rad);
+        let old = self.before[front.segment] + self.ratios[front.segment] * field.reduced(knot.slope, front.angle_rad - knot.angle_rad);
+        let scale_m = self.scale_m;
+        Probe { elongation_m: scale_m * (new - old), per_log_m: scale_m * new, front_rad: front.angle_rad, at_end: front.at_end }
     }
 }
 

@@ -4,7 +4,7 @@ use forcewright_base::maths::{exp, exp_m1, ln};
 use forcewright_base::quadrature::GaussLegendre;
 
 use super::drive::{Drive, Hold};
-use super::field::{Field, Probe};
+use super::field::{Candidates, Field, Probe};
 use super::{WrapError, finite, increasing_root};
 
 /// Tension below which a side counts as loose, over the preload: `exp(−27.6)` is 1e-12.
@@ -18,6 +18,9 @@ const LONGEST_SETTLING: usize = 50;
 
 /// Change of the displacement from cycle to cycle at which a loop counts as closed, over its width.
 const CLOSED: f64 = 1e-12;
+
+/// States that tell where to look for the next.
+const TRAIL: usize = 3;
 
 /// Points of the quadrature of the friction work.
 const POINTS: usize = 12;
@@ -85,25 +88,41 @@ pub struct Cycle {
 
 /// Candidate tensions of a side, prepared for a step.
 struct Ahead<'a> {
-    fields: [&'a Field; 2],
+    wraps: [Candidates<'a>; 2],
     from: f64,
+    /// `T/T_p` where the step begins.
+    from_ratio: f64,
     elongation_m: f64,
     span_m: f64,
 }
 
+/// A side with a candidate tension.
+struct There {
+    /// Tension over the preload.
+    ratio: f64,
+    /// Elongation against rest, m.
+    elongation_m: f64,
+    /// Its derivative by the logarithm of the tension, m.
+    per_log_m: f64,
+    /// On the output and on the input drum.
+    probes: [Probe; 2],
+}
+
 impl Ahead<'_> {
-    /// Elongation with a logarithm of the tension, and its derivative.
-    fn elongation_m(&self, log: f64) -> (f64, f64) {
-        let probes = self.probes(log);
+    fn at(&self, log: f64) -> There {
+        let ratio = exp(log);
+        let probes = [self.wraps[0].probe(log, ratio), self.wraps[1].probe(log, ratio)];
         // Factored by the smaller tension, so that small steps keep their digits.
-        let span_m = self.span_m * exp(self.from) * exp_m1(log - self.from);
-        let sum_m: f64 = probes.iter().map(|probe| probe.elongation_m).sum();
-        let slope_m: f64 = probes.iter().map(|probe| probe.per_log_m).sum();
-        (self.elongation_m + span_m + sum_m, slope_m + self.span_m * exp(log))
+        let span_m = self.span_m * self.from_ratio * exp_m1(log - self.from);
+        let drums_m = probes[0].elongation_m + probes[1].elongation_m;
+        let per_log_m = probes[0].per_log_m + probes[1].per_log_m + self.span_m * ratio;
+        There { ratio, elongation_m: self.elongation_m + span_m + drums_m, per_log_m, probes }
     }
 
-    fn probes(&self, log: f64) -> [Probe; 2] {
-        self.fields.map(|field| field.probe(log))
+    /// Elongation with a logarithm of the tension, and its derivative.
+    fn elongation_m(&self, log: f64) -> (f64, f64) {
+        let there = self.at(log);
+        (there.elongation_m, there.per_log_m)
     }
 
     /// The logarithm of the tension at which the side has an elongation; the loosest if there is none.
@@ -115,8 +134,10 @@ impl Ahead<'_> {
             return self.from;
         }
         // The span alone gives the largest change of the tension.
-        let bound = exp(self.from) + missing_m / self.span_m;
-        let (low, high) = if missing_m > 0.0 { (self.from, ln(bound)) } else { (LOOSE_LOG, self.from) };
+        let bound = self.from_ratio + missing_m / self.span_m;
+        // A guess needs no close bound: `ln(1 + u)` is at most `u`.
+        let high = || if guess.is_some() { self.from + (bound / self.from_ratio - 1.0) } else { ln(bound) };
+        let (low, high) = if missing_m > 0.0 { (self.from, high()) } else { (LOOSE_LOG, self.from) };
         // With a guess well inside, the side is not loose.
         if missing_m < 0.0 && guess.is_none_or(|log| log < TAUT_LOG) && self.elongation_m(LOOSE_LOG).0 >= elongation_m {
             return LOOSE_LOG;
@@ -129,6 +150,33 @@ impl Ahead<'_> {
         let (there_m, slope_m) = self.elongation_m(log);
         (there_m - elongation_m, slope_m)
     }
+}
+
+/// A state that a branch has passed.
+struct Passed {
+    displacement_m: f64,
+    /// `ln(T/T_p)` of both sides.
+    logs: [f64; 2],
+    /// Their derivatives by the displacement, 1/m.
+    slopes: [f64; 2],
+}
+
+/// Where the polynomial through states and their slopes (Hermite's) has the logarithms of the tensions at a displacement, m.
+fn ahead_of(passed: &[Passed], displacement_m: f64) -> [f64; 2] {
+    let mut logs = [0.0; 2];
+    for (i, state) in passed.iter().enumerate() {
+        let (mut basis, mut slope) = (1.0, 0.0);
+        for (_, other) in passed.iter().enumerate().filter(|(j, _)| *j != i) {
+            let per_gap = 1.0 / (state.displacement_m - other.displacement_m);
+            basis *= (displacement_m - other.displacement_m) * per_gap;
+            slope += per_gap;
+        }
+        let step_m = displacement_m - state.displacement_m;
+        for (k, log) in logs.iter_mut().enumerate() {
+            *log += basis * basis * ((1.0 - 2.0 * slope * step_m) * state.logs[k] + step_m * state.slopes[k]);
+        }
+    }
+    logs
 }
 
 /// What can be loaded again and again until its loop closes.
@@ -284,7 +332,7 @@ impl History {
         finite("displacement_m", displacement_m)?;
         let inputs = self.inputs();
         let sides = self.ahead(&inputs);
-        let (step, logs) = self.step_to(&sides, displacement_m, [None; 2]);
+        let (step, Passed { logs, .. }) = self.step_to(&sides, displacement_m, [None; 2]);
         let slide_m = if step.gross_slip { displacement_m - sides[0].elongation_m(logs[0]).0 - self.slide_m } else { 0.0 };
         self.friction_j += slide_m.abs() * step.force_n.abs();
         self.slide_m += slide_m;
@@ -314,33 +362,40 @@ impl History {
         let inputs = self.inputs();
         let sides = self.ahead(&inputs);
         let mut steps: Vec<Step> = Vec::with_capacity(displacements_m.len());
-        // Places are mostly given in their order: the tensions of the last two tell where to look for the next.
-        let mut last: [Option<(f64, [f64; 2])>; 2] = [None; 2];
+        // Places are mostly given in their order: the tensions at the last few and their slopes tell where to look for the next.
+        let mut passed: Vec<Passed> = Vec::with_capacity(TRAIL + 1);
         for displacement_m in displacements_m {
             finite("displacement_m", *displacement_m)?;
-            let guess = match last {
-                [Some((before_m, before)), Some((there_m, there))] if (there_m - before_m).abs() > 0.0 => {
-                    let ahead = (displacement_m - there_m) / (there_m - before_m);
-                    [0, 1].map(|k| Some(there[k] + ahead * (there[k] - before[k])))
-                }
-                _ => [None; 2],
+            let guess = if passed.len() < 2 {
+                [None; 2]
+            } else {
+                ahead_of(&passed, *displacement_m).map(|log| Some(log).filter(|l| l.is_finite()))
             };
-            let (step, logs) = self.step_to(&sides, *displacement_m, guess);
-            last = [last[1], (!step.gross_slip && !step.loose).then_some((*displacement_m, logs))];
+            let (step, here) = self.step_to(&sides, *displacement_m, guess);
             steps.push(step);
+            if step.gross_slip || step.loose {
+                passed.clear();
+                continue;
+            }
+            if passed.len() == TRAIL {
+                passed.remove(0);
+            }
+            passed.push(here);
         }
         Ok(steps)
     }
 
     /// The step to a displacement, m, and the logarithms of its tensions.
-    fn step_to(&self, sides: &[Ahead<'_>; 2], displacement_m: f64, guess: [Option<f64>; 2]) -> (Step, [f64; 2]) {
+    fn step_to(&self, sides: &[Ahead<'_>; 2], displacement_m: f64, guess: [Option<f64>; 2]) -> (Step, Passed) {
         let wanted_m = displacement_m - self.slide_m;
         let mut logs = [sides[0].log_at(wanted_m, guess[0]), sides[1].log_at(-wanted_m, guess[1])];
         let over = (logs[0] - logs[1]).abs() > self.shared();
         if over {
             logs = self.slipping(sides, logs[0] > logs[1], logs);
         }
-        (self.report(sides, logs, displacement_m, over), logs)
+        let ends = [sides[0].at(logs[0]), sides[1].at(logs[1])];
+        let slopes = [1.0 / ends[0].per_log_m, -1.0 / ends[1].per_log_m];
+        (self.report(&ends, logs, displacement_m, over), Passed { displacement_m, logs, slopes })
     }
 
     /// The next state, in one step without a reversal, under a force, N.
@@ -360,7 +415,7 @@ impl History {
         // A loose side gives no displacement.
         let (firm, sign) = if logs[0] >= logs[1] { (0, 1.0) } else { (1, -1.0) };
         let displacement_m = self.slide_m + sign * sides[firm].elongation_m(logs[firm]).0;
-        let step = Step { force_n, ..self.report(&sides, logs, displacement_m, false) };
+        let step = Step { force_n, ..self.report(&[sides[0].at(logs[0]), sides[1].at(logs[1])], logs, displacement_m, false) };
         self.take(logs, displacement_m, &inputs);
         Ok(step)
     }
@@ -404,8 +459,9 @@ impl History {
     fn ahead<'a>(&'a self, inputs: &'a [Field; 2]) -> [Ahead<'a>; 2] {
         let spec = self.drive.spec();
         [0, 1].map(|k| Ahead {
-            fields: [&self.outputs[k], &inputs[k]],
+            wraps: [self.outputs[k].candidates(), inputs[k].candidates()],
             from: self.logs[k],
+            from_ratio: exp(self.logs[k]),
             elongation_m: self.elongations_m[k],
             span_m: spec.preload_n * spec.spans_m[k] / spec.axial_stiffness_n,
         })
@@ -444,18 +500,17 @@ impl History {
         found
     }
 
-    fn report(&self, sides: &[Ahead<'_>; 2], logs: [f64; 2], displacement_m: f64, gross_slip: bool) -> Step {
+    fn report(&self, ends: &[There; 2], logs: [f64; 2], displacement_m: f64, gross_slip: bool) -> Step {
         let preload_n = self.drive.spec().preload_n;
-        let tensions_n = logs.map(|log| preload_n * exp(log));
-        let probes = [sides[0].probes(logs[0]), sides[1].probes(logs[1])];
-        let stiffness = |k: usize| tensions_n[k] / sides[k].elongation_m(logs[k]).1;
+        let tensions_n = [0, 1].map(|k| preload_n * ends[k].ratio);
+        let stiffness = |k: usize| tensions_n[k] / ends[k].per_log_m;
         let firm = |k: usize| logs[k] > LOOSE_LOG + 1e-9;
         Step {
             displacement_m,
             force_n: tensions_n[0] - tensions_n[1],
             tensions_n,
-            slipped_rad: probes.map(|drums| drums.map(|probe| probe.front_rad)),
-            at_end: probes.map(|drums| drums.map(|probe| probe.at_end)),
+            slipped_rad: [0, 1].map(|k| ends[k].probes.map(|probe| probe.front_rad)),
+            at_end: [0, 1].map(|k| ends[k].probes.map(|probe| probe.at_end)),
             tangent_n_per_m: if gross_slip { 0.0 } else { (0..2).filter(|&k| firm(k)).map(stiffness).sum() },
             gross_slip,
             loose: !(firm(0) && firm(1)),
