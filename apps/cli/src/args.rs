@@ -20,6 +20,7 @@ pub(crate) fn command() -> Command {
         .subcommand(sweep())
         .subcommand(merge())
         .subcommand(tolerance())
+        .subcommand(compare())
         .subcommand(export())
         .subcommand(reproduce())
         .subcommand(explain())
@@ -151,6 +152,25 @@ fn optimise() -> Command {
         .arg(number("seed", "Seed of the starts after the first, instead of `seed` of the file").value_parser(clap::value_parser!(u32)))
         .arg(json());
     choices(command).after_help(OPTIMISE_HELP)
+}
+
+const COMPARE_HELP: &str = "\
+Every file is analysed in full. The sheet has what it gives (force or torque), over which travel or turn, how much that varies, how stiff it is,
+what part of the work is lost, the box around it, the mass and number of its parts, and whether it does what its file asks for; report.html
+says of each number what it is. A dash stands where there is no such number, or it is not known.
+
+--lever LENGTH compares forces with torques, all as what the first file gives: torque = force × lever.
+
+Exit codes: 0 all meet the requirements of their files, 1 one does not, 2 error in a file or the call, 3 travel or accuracy not reached, 4 input/output, 130 interrupted.";
+
+fn compare() -> Command {
+    Command::new("compare")
+        .about("Mechanisms of any family side by side, in one sheet of common measures")
+        .arg(file().num_args(2..=8).help("Project files, two to eight"))
+        .arg(Arg::new("lever").long("lever").value_name("LENGTH").help("Arm that makes a torque of a force, such as \"40 mm\""))
+        .arg(out("Write report.html and result.json into this folder"))
+        .arg(json())
+        .after_help(COMPARE_HELP)
 }
 
 const EXPORT_HELP: &str = "\

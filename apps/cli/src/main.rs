@@ -30,6 +30,7 @@ fn main() -> ExitCode {
         Some(("synthesise", m)) => commands::synthesise::run(m),
         Some(("optimise", m)) => commands::optimise::run(m),
         Some(("tolerance", m)) => commands::tolerance::run(m),
+        Some(("compare", m)) => commands::compare::run(m),
         Some(("export", m)) => commands::export::run(m),
         Some(("merge", m)) => commands::merge::run(m),
         Some(("reproduce", m)) => commands::reproduce::run(m),

@@ -68,6 +68,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0104", "not a file: tests of hostile files"),
     ("E0110", "below, by a variant"),
     ("E0111", "below, by a setting"),
+    ("E0126", "calls of compare: its tests"),
     ("E0130", "calls of sweep: tests of the library"),
     ("E0131", "calls of sweep: tests of the library"),
     ("E0132", "files of sweep: tests of the library"),

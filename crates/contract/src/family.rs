@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
-use forcewright_model::{Citation, Figure, NoPart, Outcome, ParameterRow, PartSet, Statement, Status, StatusKind};
+use forcewright_model::{Citation, Duty, Figure, NoPart, Outcome, ParameterRow, PartSet, Statement, Status, StatusKind};
 
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -82,6 +82,8 @@ pub struct Analysis {
     pub model: Vec<Statement>,
     /// What is not modelled.
     pub limits: Vec<Statement>,
+    /// The same in the measures of all families; `None` if it could not begin.
+    pub duty: Option<Duty>,
 }
 
 impl Analysis {
@@ -99,7 +101,7 @@ impl Analysis {
             sources,
             warnings: Vec::new(),
         };
-        Self { outcome, figures: Vec::new(), model, limits }
+        Self { outcome, figures: Vec::new(), model, limits, duty: None }
     }
 }
 

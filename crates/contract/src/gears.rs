@@ -53,7 +53,15 @@ impl GearPart<'_> {
         let fillets = (outer_m.is_some() && radius_m > 0.0).then_some(arcs);
         let (material, density_kg_per_m3) = self.material.map_or((None, None), |(name, density)| (Some(name.to_owned()), density));
         let plate = Plate { depth_m: self.thickness_m, outline, cutouts, holes: self.holes, fillets, trial: Err(RIGID.to_owned()) };
-        Ok(Part { name: self.name.to_owned(), title: self.title.to_owned(), material, density_kg_per_m3, notes, body: Body::Plate(plate) })
+        Ok(Part {
+            name: self.name.to_owned(),
+            title: self.title.to_owned(),
+            count: 1,
+            material,
+            density_kg_per_m3,
+            notes,
+            body: Body::Plate(plate),
+        })
     }
 
     fn checked_outer_m(&self) -> Result<Option<f64>, GearError> {

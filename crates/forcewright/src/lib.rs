@@ -15,6 +15,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod compare;
 mod export;
 mod front;
 pub mod gallery;
@@ -37,6 +38,7 @@ pub use forcewright_model as model;
 pub use forcewright_report as report;
 pub use forcewright_study as study;
 
+pub use compare::{Compared, Comparison, MeasureRow, compare};
 pub use export::Exported;
 pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
 pub use front::{Front, FrontPoint, FrontProgress, FrontTask, Origin};
@@ -67,7 +69,12 @@ pub fn family(id: &str) -> Option<&'static dyn Family> {
 
 /// The long story of every code, in order.
 pub fn explanations() -> impl Iterator<Item = &'static Explanation> {
-    let studies = forcewright_contract::scatter::CODES.iter().chain(tolerance::CODES).chain(synthesise::CODES).chain(export::CODES);
+    let studies = forcewright_contract::scatter::CODES
+        .iter()
+        .chain(tolerance::CODES)
+        .chain(synthesise::CODES)
+        .chain(export::CODES)
+        .chain(compare::CODES);
     forcewright_contract::codes::CODES.iter().chain(sweep::CODES).chain(studies).chain(FAMILIES.iter().flat_map(|f| f.explanations()))
 }
 

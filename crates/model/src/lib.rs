@@ -4,6 +4,7 @@
 mod check;
 mod coil;
 mod curve;
+mod duty;
 mod figure;
 mod outcome;
 mod part;
@@ -15,6 +16,7 @@ mod turned;
 pub use check::{Check, CheckState, Sense};
 pub use coil::{Coil, CoilEnd, CoilError, Winding, WireKind, WireLine, WirePiece, WireStation};
 pub use curve::{Axis, Branch, Curve};
+pub use duty::{Action, Duty, Stated};
 pub use figure::{
     BarRow, Bars, Figure, FigureContent, Film, Frame, HorizontalBand, HorizontalLine, Marker, Plot, Series, Stroke, VerticalSpan,
 };

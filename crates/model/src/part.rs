@@ -12,6 +12,8 @@ pub struct Part {
     pub name: String,
     /// What it is, for people.
     pub title: String,
+    /// How many of it the mechanism has; 0 of one that takes the place of another, as a drum for printing.
+    pub count: usize,
     /// What it is made of; `None` if nothing was said.
     pub material: Option<String>,
     /// Density of that, kg/m³; `None` if it is not known.
@@ -201,6 +203,20 @@ pub struct PartSet {
     pub display: Unit,
     /// Whether the process can make them.
     pub checks: Vec<Check>,
+}
+
+impl PartSet {
+    /// How many pieces they are.
+    pub fn pieces(&self) -> usize {
+        self.parts.iter().map(|part| part.count).sum()
+    }
+
+    /// Mass of all pieces whose density is known, kg, and the names of the others.
+    pub fn mass_kg(&self) -> (f64, Vec<&str>) {
+        let used = || self.parts.iter().filter(|part| part.count > 0);
+        let known = used().filter_map(|part| Some(part.count as f64 * part.mass_kg()?)).sum();
+        (known, used().filter(|part| part.mass_kg().is_none()).map(|part| part.name.as_str()).collect())
+    }
 }
 
 /// Why a mechanism has no parts.

@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub(crate) mod check;
+pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod explain;
 pub(crate) mod export;
@@ -36,6 +37,7 @@ pub(crate) fn welcome() -> u8 {
            forcewright optimise FILE --out out            a better design, within ranges and requirements\n  \
            forcewright tolerance tolerance-lan-thin.toml  the yield under the scatter of making\n  \
            forcewright export lan-table3.toml --out out   DXF and STEP of the part\n  \
+           forcewright compare A.toml B.toml              mechanisms of any family in one sheet\n  \
            forcewright reproduce lan2010                  the paper's numbers beside ours\n  \
            forcewright materials                          what `material.use` can name\n  \
            forcewright explain COMP002                    what a check or an error means\n\n\

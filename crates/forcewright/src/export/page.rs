@@ -142,6 +142,7 @@ impl Exported {
         let mut rows = Vec::new();
         for part in &set.parts {
             let mut row = |what: &str, text: String| rows.push(vec![part.name.clone(), what.to_owned(), text]);
+            row("pieces", if part.count == 0 { "in the place of another".to_owned() } else { part.count.to_string() });
             row("material", part.material.clone().unwrap_or_else(|| "not said".to_owned()));
             for (what, text) in facts(part, set) {
                 row(what, text);

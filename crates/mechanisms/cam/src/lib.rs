@@ -8,6 +8,7 @@ mod analysis;
 mod checks;
 mod cut;
 mod design;
+mod duty;
 mod explain;
 mod figures;
 mod influence;
@@ -178,7 +179,8 @@ fn analyse_slider(design: &Design, progress: Progress<'_>) -> Analysis {
     let mut figures = figures::figures(design, &behaviour, &measured);
     figures.extend(motion::curves::figure(design, &behaviour));
     let [model, limits] = stated;
-    Analysis { outcome, figures, model, limits }
+    let duty = Some(duty::duty(design, &behaviour, &measured));
+    Analysis { outcome, figures, model, limits, duty }
 }
 
 /// The metrics as outputs see them.

@@ -191,6 +191,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
         parts.push(Part {
             name: "cam".to_owned(),
             title: "Cam plate".to_owned(),
+            count: 1,
             material: material(0),
             density_kg_per_m3: density(0),
             notes,
@@ -208,6 +209,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
             parts.push(Part {
                 name: name.to_owned(),
                 title: format!("Cam plate, {}", ["right", "left"][drawn.side]),
+                count: 1,
                 material: material(0),
                 density_kg_per_m3: density(0),
                 notes: notes.clone(),
@@ -435,7 +437,8 @@ fn mounting_holes(making: &Making, profiles: &[Drawn; SIDES]) -> Vec<Hole> {
 pub(crate) fn roller([radius_m, pin_m, depth_m]: [f64; 3], material: Option<String>, density_kg_per_m3: Option<f64>) -> Part {
     Part {
         name: "roller".to_owned(),
-        title: "Roller (2)".to_owned(),
+        title: "Roller".to_owned(),
+        count: 2,
         material,
         density_kg_per_m3,
         notes: vec!["A ball bearing of this outer diameter does as well.".to_owned()],
@@ -473,10 +476,12 @@ fn braces(design: &Design) -> Vec<Part> {
         Part {
             name: name.to_owned(),
             title: title.to_owned(),
+            count: if same { 2 } else { 1 },
             material: None,
             density_kg_per_m3: None,
             notes: vec![
                 "The distance of the holes is the brace length: it moves the force little, the two of a pair should be equal.".to_owned(),
+                "Twice as many where they stand in pairs on both faces of the rollers.".to_owned(),
             ],
             body: Body::Plate(Plate {
                 depth_m: making.brace_thickness_m,
@@ -489,7 +494,7 @@ fn braces(design: &Design) -> Vec<Part> {
         }
     };
     if same {
-        return vec![one("brace", "Brace (2, or 4 in pairs)", sides[0].brace_m)];
+        return vec![one("brace", "Brace", sides[0].brace_m)];
     }
     vec![one("brace-right", "Brace, right", sides[0].brace_m), one("brace-left", "Brace, left", sides[1].brace_m)]
 }
@@ -499,7 +504,8 @@ fn pin(design: &Design, thickness_m: f64) -> Part {
     let making = &design.making;
     Part {
         name: "pin".to_owned(),
-        title: "Axle (2), without what carries the springs".to_owned(),
+        title: "Axle, without what carries the springs".to_owned(),
+        count: 2,
         material: None,
         density_kg_per_m3: None,
         notes: vec!["Longer where several springs stand side by side on it.".to_owned()],

@@ -7,6 +7,7 @@ pub(crate) mod analysis;
 pub(crate) mod checks;
 mod cut;
 pub(crate) mod design;
+mod duty;
 pub(crate) mod figures;
 mod losses;
 mod mechanism;
@@ -61,8 +62,9 @@ pub(crate) fn analyse(design: &Design, progress: Progress<'_>) -> Analysis {
         warnings: statements::warnings(design, &behaviour, &measured),
     };
     let [model, limits] = stated;
+    let duty = Some(duty::duty(design, &behaviour, &measured));
     let figures = figures::figures(design, &behaviour, &measured);
-    Analysis { outcome, figures, model, limits }
+    Analysis { outcome, figures, model, limits, duty }
 }
 
 /// The design of a cam with a slider. E0616: synthesis does not know torque cams.

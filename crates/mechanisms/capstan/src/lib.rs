@@ -6,6 +6,7 @@
 mod analysis;
 mod checks;
 mod design;
+mod duty;
 mod explain;
 mod figures;
 pub mod geometry;
@@ -80,7 +81,8 @@ impl Mechanism for Capstan {
         };
         let figures = figures::figures(design, &behaviour, &measured);
         let [model, limits] = stated;
-        Analysis { outcome, figures, model, limits }
+        let duty = Some(duty::duty(design, &measured));
+        Analysis { outcome, figures, model, limits, duty }
     }
 
     fn parts(design: &Design) -> Result<PartSet, NoPart> {

@@ -52,7 +52,15 @@ fn part(design: &Design, geometry: &Drive, made: Made, clearance_m: Option<f64>)
     if let Some(clearance_m) = clearance_m {
         notes.push(printing(design, &made, clearance_m));
     }
-    Part { name, title, material: None, density_kg_per_m3: design.making.density_kg_per_m3, notes, body: Body::Turned(made.body) }
+    Part {
+        name,
+        title,
+        count: usize::from(clearance_m.is_none()),
+        material: None,
+        density_kg_per_m3: design.making.density_kg_per_m3,
+        notes,
+        body: Body::Turned(made.body),
+    }
 }
 
 /// What the maker must know.

@@ -97,6 +97,14 @@ impl Layout {
         f64::from(self.layers)
     }
 
+    /// How many plates with the drawn network and its mirrored half the whole layout has.
+    pub fn plates_each(&self) -> usize {
+        [self.rows.map_or(1, |r| r.count), self.circle.map_or(1, |c| c.count), self.plates, self.layers]
+            .into_iter()
+            .map(|n| n as usize)
+            .product()
+    }
+
     /// Whether there is more than the drawn network and its mirrored half.
     pub fn repeats(&self) -> bool {
         self.rows.is_some() || self.circle.is_some() || self.plates > 1 || self.layers > 1

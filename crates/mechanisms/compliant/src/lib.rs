@@ -8,6 +8,7 @@ mod bodies;
 mod checks;
 mod crossing;
 mod design;
+mod duty;
 mod endurance;
 mod explain;
 mod figures;
@@ -108,7 +109,8 @@ impl Mechanism for Compliant {
         };
         let figures = figures::figures(design, &behaviour, &measured);
         let [model, limits] = stated;
-        Analysis { outcome, figures, model, limits }
+        let duty = Some(duty::duty(design, &trusted, &measured));
+        Analysis { outcome, figures, model, limits, duty }
     }
 
     fn parts(design: &Design) -> Result<PartSet, NoPart> {

@@ -386,9 +386,9 @@ impl<'a> Drawing<'a> {
         let design = self.design;
         let layout = &design.layout;
         let depth_m = design.network.beams.iter().map(|b| b.section.depth_m).fold(0.0, f64::max);
-        let each = layout.copies() / self.images.len() as f64 * layout.layers();
+        let each = layout.plates_each();
         let alone = outline.regions.len() == 1;
-        let mut notes = if each > 1.0 { vec![format!("{each} of these make the mechanism.")] } else { Vec::new() };
+        let mut notes = if each > 1 { vec![format!("{each} of these make the mechanism.")] } else { Vec::new() };
         // The load node of a mirrored half has a block unless both halves meet in it.
         let meets = layout.mirror.is_some() && !self.solids.iter().any(|s| s.node == design.load_node);
         if meets {
@@ -403,6 +403,7 @@ impl<'a> Drawing<'a> {
         let all = outline.regions.iter().enumerate().map(|(index, region)| Part {
             name: named(index),
             title: design.title.clone(),
+            count: each,
             material: material.map(|m| m.origin.clone()),
             density_kg_per_m3: material.and_then(|m| m.density_kg_per_m3),
             notes: notes.clone(),

@@ -9,6 +9,7 @@ mod bench;
 mod checks;
 mod closing;
 mod design;
+mod duty;
 mod explain;
 mod figures;
 mod gears;
@@ -93,7 +94,8 @@ impl Mechanism for Lavt {
         figures.extend(bench::figure(design, &behaviour));
         figures.extend(closings.iter().flat_map(Closings::figures));
         let [model, limits] = stated;
-        Analysis { outcome, figures, model, limits }
+        let duty = Some(duty::duty(&measured));
+        Analysis { outcome, figures, model, limits, duty }
     }
 
     fn parts(design: &Design) -> Result<PartSet, NoPart> {

@@ -213,6 +213,7 @@ fn sleeve(design: &Design, name: &str, title: &str, [length_m, outer_m, bore_m]:
     Ok(Part {
         name: name.to_owned(),
         title: title.to_owned(),
+        count: 1,
         material: None,
         density_kg_per_m3: design.making.density_kg_per_m3,
         notes: notes.to_vec(),
@@ -244,6 +245,7 @@ fn spring(design: &Design) -> Result<Part, NoPart> {
     Ok(Part {
         name: "spring".to_owned(),
         title: "Wrap spring".to_owned(),
+        count: 1,
         material: design.wire.grade.map(|grade| format!("spring steel wire EN 10270-1 {}", grade.name)),
         density_kg_per_m3: design.wire.density_kg_per_m3,
         notes: spring_notes(design, &body),
@@ -275,6 +277,7 @@ fn plate(design: &Design, name: &str, title: &str, diameter_m: f64, holes: Vec<H
     Part {
         name: name.to_owned(),
         title: title.to_owned(),
+        count: 1,
         material: None,
         density_kg_per_m3: design.making.density_kg_per_m3,
         notes,

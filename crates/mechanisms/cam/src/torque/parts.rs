@@ -136,6 +136,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
     let disc = Part {
         name: name.to_owned(),
         title: title.to_owned(),
+        count: 1,
         material: material(0),
         density_kg_per_m3: density(0),
         notes: notes(design, &mechanism, &lobe, cost),
@@ -151,7 +152,8 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
     let pin_m = design.making.pin_m;
     let axle = Part {
         name: "pin".to_owned(),
-        title: "Axle (2), without what carries follower and springs".to_owned(),
+        title: "Axle, without what carries follower and springs".to_owned(),
+        count: 2,
         material: None,
         density_kg_per_m3: None,
         notes: vec!["Longer where several springs stand side by side on it.".to_owned()],

@@ -60,6 +60,7 @@ pub fn turned(name: &str, bore_diameter_m: f64, sections: Vec<Section>) -> Part 
     Part {
         name: name.to_owned(),
         title: format!("Sample {name}"),
+        count: 1,
         material: Some("steel".to_owned()),
         density_kg_per_m3: Some(7850.0),
         notes: vec!["Break all edges.".to_owned()],

@@ -67,6 +67,7 @@ pub fn part(name: &str, depth_m: f64, outline: Profile) -> Part {
     Part {
         name: name.to_owned(),
         title: format!("Sample {name}"),
+        count: 1,
         material: None,
         density_kg_per_m3: None,
         notes: Vec::new(),

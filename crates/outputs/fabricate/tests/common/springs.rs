@@ -52,6 +52,7 @@ pub fn part_of(name: &str, coil: Coil) -> Part {
     Part {
         name: name.to_owned(),
         title: format!("Sample {name}"),
+        count: 1,
         material: Some("spring wire EN 10270-1 SH".to_owned()),
         density_kg_per_m3: Some(7850.0),
         notes: vec!["Relieve stresses after winding.".to_owned()],

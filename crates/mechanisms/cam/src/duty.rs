@@ -1,0 +1,70 @@
+//! A cam mechanism in the measures of all families.
+
+use forcewright_model::{Action, Duty, Stated};
+
+use crate::analysis::{Behaviour, Measured, Station};
+use crate::design::Design;
+
+/// A variation below this is rounding of a force that the cam makes exact.
+const ROUNDING: f64 = 1e-9;
+
+/// Numbers that force over travel and torque over turn have alike.
+pub(crate) struct Given {
+    pub(crate) action: Action,
+    /// Name of what it gives in metrics: `force`.
+    pub(crate) name: &'static str,
+    /// Over which means are taken, from and to, m or rad.
+    pub(crate) window: [f64; 2],
+    /// Travel and force without friction there.
+    pub(crate) curve: Vec<[f64; 2]>,
+    pub(crate) box_m: Option<[f64; 3]>,
+    pub(crate) box_basis: &'static str,
+}
+
+/// What the slider gives.
+pub(crate) fn duty(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Duty {
+    let braces_m = 2.0 * design.making.brace_thickness_m;
+    let depth = design.built.thickness_m.map(|m| m + braces_m);
+    let sides = measured.get("width").zip(measured.get("height")).zip(depth).map(|((width, height), depth)| [width, height, depth]);
+    let given = Given {
+        action: Action::Force,
+        name: "force",
+        window: behaviour.window_m,
+        curve: behaviour.window.iter().map(|s: &Station| [s.travel_m, s.still.force_n]).collect(),
+        box_m: sides,
+        box_basis: if sides.is_some() {
+            "rollers, braces and slider's joint over the stroke, as deep as cam and braces; springs stand beyond it where they are wider"
+        } else {
+            "the thickness of the cam is not known: `design.cam_thickness`"
+        },
+    };
+    given.duty(measured)
+}
+
+impl Given {
+    pub(crate) fn duty(self, measured: &Measured) -> Duty {
+        const STOPPED: &str = "the mechanism does not get through its window";
+        let get = |what: &str| measured.get(&format!("{}_{what}", self.name));
+        let mean = get("mean");
+        let values = || self.curve.iter().map(|p| p[1]);
+        let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        let variation = mean.filter(|_| high + low > 0.0).map(|_| (high - low) / (high + low));
+        let exact = variation.is_some_and(|v| v < ROUNDING);
+        let variation = if exact { Some(0.0) } else { variation };
+        let slope = |pair: &[[f64; 2]]| ((pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).abs();
+        let steepest =
+            mean.map(|_| if exact { 0.0 } else { self.curve.windows(2).filter(|p| p[1][0] > p[0][0]).map(slope).fold(0.0, f64::max) });
+        let loss = mean.zip(get("up_mean")).map(|(mean, up)| 1.0 - mean / up);
+        let name = self.name;
+        Duty {
+            action: self.action,
+            strength: Stated::new(mean, &format!("mean of the {name} without friction over the window"), STOPPED),
+            range: Stated::new(mean.map(|_| self.window[1] - self.window[0]), "the window", STOPPED),
+            variation: Stated::new(variation, &format!("of the {name} without friction over the window"), STOPPED),
+            stiffness: Stated::new(steepest, &format!("steepest slope of the {name} without friction over the window"), STOPPED),
+            loss: Stated::new(loss, "rolling resistance, against the springs: 1 − mean/mean up", STOPPED),
+            box_m: self.box_m,
+            box_basis: self.box_basis.to_owned(),
+        }
+    }
+}
