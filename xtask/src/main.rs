@@ -3,6 +3,7 @@
 //! Logic lives here and not in shell scripts, so that people, every platform and the continuous integration run the same thing.
 #![allow(clippy::print_stdout, reason = "a program that talks to people")]
 
+mod book;
 mod browser;
 mod examples;
 mod fuzz;

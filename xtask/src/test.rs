@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 use crate::Workspace;
+use crate::book;
 use crate::browser;
 use crate::examples::{self, Example};
 use crate::generate::{built, forcewright};
@@ -84,6 +85,7 @@ fn run_program(workspace: &Workspace, what: What, binary: Option<&Path>, steps: 
     let solved: Vec<Solved> = examples.into_iter().filter_map(|example| bench.run_example(example, what.examples, steps)).collect();
     if what.examples {
         bench.check_with_python(&solved, steps);
+        book::run(workspace, &bench.folder, &bench.binary, steps);
     }
     if what.browser {
         browser::run(workspace, &bench.folder, &solved, steps);
@@ -149,7 +151,8 @@ impl Bench<'_> {
     }
 }
 
-fn ending(finished: Result<Finished, String>, expected: i32) -> Outcome {
+/// Whether a command ended with the exit code expected.
+pub(crate) fn ending(finished: Result<Finished, String>, expected: i32) -> Outcome {
     match finished {
         Ok(finished) if finished.code == Some(expected) => Outcome::Passed,
         Ok(finished) => {

@@ -231,7 +231,9 @@ pub fn task<F: Measuring>(
         let at = many.place(&m.name)?;
         let typed = F::asked(design, &m.name).first().map(|a| a.key.to_owned());
         let key = typed.unwrap_or_else(|| format!("requirements.limits.{}", m.name));
-        let checks = F::Metrics::ALL.iter().filter(|i| i.name == m.name).map(|i| i.name).collect();
+        // A check is called after its requirement, or after the metric that is limited by name.
+        let asked = F::asked(design, &m.name).into_iter().map(|a| a.requirement);
+        let checks = F::Metrics::ALL.iter().filter(|i| i.name == m.name).map(|i| i.name).chain(asked).collect();
         let (values, unit, scale) = (at..at + 1, m.unit, scale(&m.name));
         Some(Limit { name: m.requirement.clone(), key, checks, values, lower: m.lower, upper: m.upper, scale, unit, in_band: false })
     });

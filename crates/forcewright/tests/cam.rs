@@ -53,6 +53,24 @@ fn a_search_centres_the_force() {
     assert!((value / spread - 1.0).abs() < 1e-3, "{value} {spread}");
 }
 
+/// The goal of a search is told as the metric that it is, in its unit; and a setting whose keys are paths is written into the new file whole.
+#[test]
+fn a_search_for_the_least_hysteresis_speaks_of_a_ratio() {
+    let set = [
+        "optimise.objective={ minimise = \"hysteresis\" }",
+        "optimise.variables={ \"design.roller_diameter\" = { range = [\"30 mm\", \"34 mm\"] } }",
+    ];
+    let loaded = load("no-undercut", text("no-undercut"), &set);
+    let found = loaded.optimise(&DiskFiles, Path::new("less.toml"), (None, None), &|_| true).map_err(|e| e.render(false)).unwrap();
+    let written = found.text.as_deref().expect("a better design");
+    assert!(written.contains("\"design.roller_diameter\""), "{written}");
+    let value = metric(&load("less", written, &[]), "hysteresis");
+    let told = found.wording.value(found.best.as_ref().expect("a run").goal);
+    // The search means over its stations, the metric over more of them.
+    assert!((told / value - 1.0).abs() < 1e-3, "{told} {value}");
+    assert_eq!(found.wording.unit.dimension(), Some(forcewright::base::units::Dimension::Ratio));
+}
+
 /// The same of a torque cam; and the smallest disc that a search finds keeps what is required, its rollers at the edge of the undercut.
 #[test]
 fn searches_of_torque_cams() {

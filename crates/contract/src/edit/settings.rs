@@ -16,25 +16,24 @@ pub fn with_settings(text: &str, settings: &[String], variant: Option<&str>) -> 
         let value = value.trim();
         // A word that is no value of the language is a text, as it is where settings are read.
         let value = value.parse::<Value>().ok().filter(|v| !v.is_datetime()).unwrap_or_else(|| Value::from(value));
-        let path = key.split('.').map(str::trim).collect::<Vec<_>>().join(".");
-        lay(&mut document, &path, value, variant)?;
+        lay(&mut document, &key.split('.').map(str::trim).collect::<Vec<_>>(), value, variant)?;
     }
     Ok(document.to_string())
 }
 
-/// Sets a value; of a table each entry, so that its other entries stay.
-fn lay(document: &mut DocumentMut, path: &str, value: Value, variant: Option<&str>) -> Result<(), EditError> {
+/// Sets a value; of a table each entry, so that its other entries stay. A key of a table may have dots of its own.
+fn lay(document: &mut DocumentMut, parts: &[&str], value: Value, variant: Option<&str>) -> Result<(), EditError> {
     match value {
-        Value::InlineTable(table) => table.into_iter().try_for_each(|(key, value)| lay(document, &format!("{path}.{key}"), value, variant)),
-        value => set_everywhere(document, &New { path, value, list: None }, variant),
+        Value::InlineTable(table) => {
+            table.into_iter().try_for_each(|(key, value)| lay(document, &[parts, &[key.as_str()]].concat(), value, variant))
+        }
+        value => {
+            let new = New { path: &parts.join("."), value, list: None };
+            set(document.as_table_mut(), parts, &new, true)?;
+            let own = variant.and_then(|name| document.get_mut("variants")?.as_table_like_mut()?.get_mut(name)?.as_table_like_mut());
+            own.map_or(Ok(()), |own| set(own, parts, &new, false))
+        }
     }
-}
-
-fn set_everywhere(document: &mut DocumentMut, new: &New, variant: Option<&str>) -> Result<(), EditError> {
-    let parts: Vec<&str> = new.path.split('.').collect();
-    set(document.as_table_mut(), &parts, new, true)?;
-    let own = variant.and_then(|name| document.get_mut("variants")?.as_table_like_mut()?.get_mut(name)?.as_table_like_mut());
-    own.map_or(Ok(()), |own| set(own, &parts, new, false))
 }
 
 /// The text for another folder: relative paths in `extends` and of files of data, in variants too, are led there through `way`, the path

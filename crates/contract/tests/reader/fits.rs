@@ -176,3 +176,13 @@ fn schema_and_table_say_which_parameters_take_a_fit() {
     let row = |path: &str| table.lines().find(|l| l.starts_with(&format!("| `{path}`"))).unwrap().to_owned();
     assert!(row("design.beams.*.pin").contains("`\"17.6 mm h7\"`") && !row("design.beams.*.thickness").contains("h7"));
 }
+
+/// A table of a setting whose keys are paths keeps them whole.
+#[test]
+fn a_setting_with_dotted_keys_is_written_as_it_was_meant() {
+    let setting = r#"optimise.variables={ "design.thickness" = { range = ["1 mm", "2 mm"] } }"#.to_owned();
+    let written = with_settings(&text("4 mm", ""), &[setting], None).unwrap();
+    assert!(written.contains("[optimise.variables.\"design.thickness\"]\nrange = [\"1 mm\", \"2 mm\"]"), "{written}");
+    let document: toml_edit::DocumentMut = written.parse().unwrap();
+    assert!(document["optimise"]["variables"]["design.thickness"]["range"].is_array());
+}

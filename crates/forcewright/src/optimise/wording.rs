@@ -34,6 +34,11 @@ impl Wording {
         let unit_of = |at: usize| output(at).map_or("1", |o| o.unit);
         let sign = if large { -1.0 } else { 1.0 };
         let (name, unit, form) = match task.steps.last().map(|s| &s.goal) {
+            // A sum over several values is the objective itself: the hysteresis of many forces is a ratio.
+            Some(Goal::Values(weights)) if weights.len() > 1 => {
+                let metric = result.and_then(|r| r.metric(objective));
+                (objective.to_owned(), metric.map_or("1", |m| m.dimension.si_symbol()), Form::Times(sign))
+            }
             Some(Goal::Values(weights)) => {
                 let (at, weight) = weights.first().copied().unwrap_or((0, sign));
                 (objective.to_owned(), unit_of(at), Form::Times(1.0 / weight))
@@ -51,7 +56,9 @@ impl Wording {
             Some(Goal::HalfWidth) => (objective.to_owned(), "%", Form::Times(sign)),
             Some(Goal::Variables(_)) | None => (objective.to_owned(), "1", Form::Times(sign)),
         };
-        Self { name, unit: display(unit, result), objective: objective.to_owned(), large, form }
+        let own = result.and_then(|r| r.metric(objective)).filter(|m| name == objective && m.dimension.si_symbol() == unit);
+        let unit = own.map_or_else(|| display(unit, result), |m| m.display.clone());
+        Self { name, unit, objective: objective.to_owned(), large, form }
     }
 
     /// The goal of a metric's value, if the goal is that metric but for a factor.

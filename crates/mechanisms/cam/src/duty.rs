@@ -24,8 +24,8 @@ pub(crate) struct Given {
 /// What the slider gives.
 pub(crate) fn duty(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Duty {
     let braces_m = 2.0 * design.making.brace_thickness_m;
-    let depth = design.built.thickness_m.map(|m| m + braces_m);
-    let sides = measured.get("width").zip(measured.get("height")).zip(depth).map(|((width, height), depth)| [width, height, depth]);
+    let depth_m = design.drawn_thickness_m() + braces_m;
+    let sides = measured.get("width").zip(measured.get("height")).map(|(width, height)| [width, height, depth_m]);
     let given = Given {
         action: Action::Force,
         name: "force",
@@ -33,9 +33,9 @@ pub(crate) fn duty(design: &Design, behaviour: &Behaviour, measured: &Measured) 
         curve: behaviour.window.iter().map(|s: &Station| [s.travel_m, s.still.force_n]).collect(),
         box_m: sides,
         box_basis: if sides.is_some() {
-            "rollers, braces and slider's joint over the stroke, as deep as cam and braces; springs stand beyond it where they are wider"
+            "rollers, braces and slider's joint over the stroke, as deep as cam and braces are drawn; springs stand beyond it where they are wider"
         } else {
-            "the thickness of the cam is not known: `design.cam_thickness`"
+            "the mechanism does not get through its stroke"
         },
     };
     given.duty(measured)

@@ -181,7 +181,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
     })?;
     let profiles = drawn(design, &behaviour)?;
     let making = &design.making;
-    let thickness_m = design.built.thickness_m.unwrap_or(0.5 * design.cut_roller_m);
+    let thickness_m = design.drawn_thickness_m();
     let cost = cost_of_arcs(design, &behaviour, &profiles);
     let notes = cam_notes(design, &behaviour, &profiles, cost);
     let material = |index: usize| design.materials[index].as_ref().map(|m| m.name.clone());

@@ -82,6 +82,11 @@ pub struct Making {
 }
 
 impl Design {
+    /// Thickness of the cam, m: as given, or as it is drawn without.
+    pub(crate) fn drawn_thickness_m(&self) -> f64 {
+        self.built.thickness_m.unwrap_or(0.5 * self.cut_roller_m)
+    }
+
     /// The mechanism on a disc that was cut.
     pub fn mechanism(&self, cut: &Arc<Cut>) -> Mechanism {
         let built = &self.built;

@@ -10,9 +10,8 @@ use crate::duty::Given;
 /// What the disc gives.
 pub(crate) fn duty(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Duty {
     // The axles are twice as long as the disc is thick.
-    let depth = design.built.thickness_m.map(|m| 2.0 * m);
-    let sides = measured.get("width").zip(measured.get("disc_diameter")).zip(depth);
-    let box_m = sides.map(|((width, disc), depth)| [width.max(disc), disc, depth]);
+    let depth_m = 2.0 * design.drawn_thickness_m();
+    let box_m = measured.get("width").zip(measured.get("disc_diameter")).map(|(width, disc)| [width.max(disc), disc, depth_m]);
     let given = Given {
         action: Action::Torque,
         name: "torque",
@@ -20,9 +19,9 @@ pub(crate) fn duty(design: &Design, behaviour: &Behaviour, measured: &Measured) 
         curve: behaviour.window.iter().map(|s: &Station| [s.turn_rad(), s.still.torque_nm]).collect(),
         box_m,
         box_basis: if box_m.is_some() {
-            "disc and rollers over the turn, as deep as the axles; springs stand beyond it where they are wider"
+            "disc and rollers over the turn, as deep as the axles are drawn; springs stand beyond it where they are wider"
         } else {
-            "the thickness of the disc is not known: `design.cam_thickness`"
+            "the disc does not get through its turn"
         },
     };
     given.duty(measured)

@@ -122,7 +122,7 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
         .ok_or_else(|| no_part("the outline does not find back from a lobe to the other".to_owned(), "see `forcewright check`"))?;
     let lobe = lobe(design, &mechanism, start)?;
     let cost = cost_of_arcs(&mechanism, &lobe);
-    let thickness_m = design.built.thickness_m.unwrap_or(0.5 * design.cut_roller_m);
+    let thickness_m = design.drawn_thickness_m();
     let whole = outline(&lobe, &joined);
     let material = |index: usize| design.materials[index].as_ref().map(|m| m.name.clone());
     let density = |index: usize| design.materials[index].as_ref().and_then(|m| m.density_kg_per_m3);
