@@ -110,9 +110,17 @@ fn solve_with_report() -> String {
 fn tolerance_4096(bencher: Bencher<'_, '_>) {
     let project = Loaded::from_text("sanchez-2-springs.toml", text(), &Choices::default());
     let project = project.unwrap_or_else(|refused| panic!("{}", refused.render(false)));
-    let choices = ToleranceChoices { samples: Some(4096), seed: None };
+    let choices = ToleranceChoices { samples: Some(4096), ..ToleranceChoices::default() };
     bencher.counter(ItemsCount::new(4096_usize)).bench_local(|| {
         let found = project.tolerance(choices, &mut |_| true).unwrap_or_else(|error| panic!("{error}"));
         found.study.all.estimate.value
     });
+}
+
+/// A million linearised designs, beside 64 in full.
+#[divan::bench(sample_count = 1)]
+fn linearised_1e6(bencher: Bencher<'_, '_>) {
+    let loaded = Loaded::from_text("sanchez-2-springs.toml", text(), &Choices::default()).map_err(|e| e.render(false)).expect("understood");
+    let choices = ToleranceChoices { samples: Some(64), linear: Some(1_000_000), ..ToleranceChoices::default() };
+    bencher.bench_local(|| loaded.tolerance(choices, &mut |_| true).expect("it scatters"));
 }

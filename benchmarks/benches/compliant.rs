@@ -178,7 +178,7 @@ fn tolerance_4096(bencher: Bencher<'_, '_>) {
     let set = vec!["model.beam=inextensible".to_owned(), "model.accuracy=1e-4".to_owned()];
     let project = Loaded::from_text("lan-table3.toml", &format!("{}{SCATTER}", text()), &Choices { variant: None, set });
     let project = project.unwrap_or_else(|refused| panic!("{}", refused.render(false)));
-    let choices = ToleranceChoices { samples: Some(4096), seed: None };
+    let choices = ToleranceChoices { samples: Some(4096), ..ToleranceChoices::default() };
     bencher.counter(divan::counter::ItemsCount::new(4096_usize)).bench_local(|| {
         let found = project.tolerance(choices, &mut |_| true).unwrap_or_else(|error| panic!("{error}"));
         found.study.all.estimate.value

@@ -33,8 +33,11 @@ pub(crate) fn run(workspace: &Workspace, folder: &Path, binary: &Path, steps: &m
     };
     for (name, commands) in stories {
         let place = folder.join("book").join(&name);
-        let prepared = emptied(&place).and_then(|()| SOURCES.iter().try_for_each(|from| copied(&workspace.root.join(from), &place.join(from))));
-        if !steps.run(&format!("book {name}: {} commands", commands.len()), || crate::step::Outcome::from_problems(&Vec::from_iter(prepared.err()))) {
+        let prepared =
+            emptied(&place).and_then(|()| SOURCES.iter().try_for_each(|from| copied(&workspace.root.join(from), &place.join(from))));
+        if !steps.run(&format!("book {name}: {} commands", commands.len()), || {
+            crate::step::Outcome::from_problems(&Vec::from_iter(prepared.err()))
+        }) {
             continue;
         }
         for told in commands {

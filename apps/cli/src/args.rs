@@ -290,6 +290,10 @@ fn tolerance() -> Command {
         .arg(file().help("Project file"))
         .arg(out("Write report.html and result.json into this folder"))
         .arg(count("samples", "Designs drawn; without it those of the file").value_parser(clap::value_parser!(u32).range(64..=100_000_000)))
+        .arg(
+            count("linear", "Designs of the linearised yield, beside them; without it 16384")
+                .value_parser(clap::value_parser!(u32).range(64..=100_000_000)),
+        )
         .arg(count("seed", "Seed of the draws; without it that of the file"))
         .arg(json());
     choices(command).after_help(

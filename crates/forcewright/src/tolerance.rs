@@ -50,6 +50,8 @@ pub struct ToleranceChoices {
     pub samples: Option<u32>,
     /// Seed of the draws.
     pub seed: Option<u32>,
+    /// Designs of the linearised yield; without it 16 384.
+    pub linear: Option<u32>,
 }
 
 /// Why there is no yield.
@@ -104,7 +106,7 @@ impl Loaded {
     /// let text = forcewright::gallery::find("lan-table3").expect("in the gallery").text;
     /// let loaded = Loaded::from_text("lan-table3.toml", text, &Choices::default()).map_err(|e| e.render(false))?;
     /// // The file has 1 mm ± 0.02 mm, three standard deviations: 64 designs tell little more than that most are good.
-    /// let choices = ToleranceChoices { samples: Some(64), seed: None };
+    /// let choices = ToleranceChoices { samples: Some(64), ..ToleranceChoices::default() };
     /// let found = loaded.tolerance(choices, &mut |_| true).map_err(|e| e.to_string())?;
     /// assert_eq!(found.study.variables[0].path, "design.thickness");
     /// // F ∝ w³: two per cent of the thickness are six of the force, and the band is five wide.
@@ -128,7 +130,8 @@ impl Loaded {
         let samples = choices.samples.unwrap_or_else(|| of(&section.samples, SAMPLES));
         let seed = choices.seed.unwrap_or_else(|| of(&section.seed, SEED));
         let target = section.target.as_ref().map_or(TARGET, |t| t.value.si);
-        let plan = Plan::new(population.clone(), u64::from(samples), u64::from(seed), target);
+        let usual = Plan::new(population.clone(), u64::from(samples), u64::from(seed), target);
+        let plan = Plan { linear_samples: choices.linear.map_or(usual.linear_samples, u64::from), ..usual };
         let study = study(&*evaluator, &plan, progress).map_err(NoTolerance::Study)?;
         if study.measures.iter().all(|m| m.requirement.is_empty()) {
             let help = "add `[requirements]`, such as `force = { nominal = \"10 N\", band = \"5 %\" }`";

@@ -32,7 +32,7 @@ fn the_yield_of_a_hysteresis_is_that_of_the_arm() {
     ];
     let loaded = load("sanchez-2-springs", text("sanchez-2-springs"), &set);
     let nominal = metric(&loaded, "hysteresis");
-    let found = loaded.tolerance(ToleranceChoices { samples: Some(4096), seed: Some(1) }, &mut |_| true).unwrap();
+    let found = loaded.tolerance(ToleranceChoices { samples: Some(4096), seed: Some(1), linear: None }, &mut |_| true).unwrap();
     // ±0.008 mm are three standard deviations; the limit is 3 %.
     let z = (0.03 / nominal - 1.0) * 0.032 / (0.008 / 3.0);
     let expected = 1.0 - 0.5 * forcewright::base::maths::erfc(z / 2.0_f64.sqrt());

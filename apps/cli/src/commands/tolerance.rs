@@ -29,7 +29,7 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         return output::write_failed(&failed, as_json);
     }
     let number = |name: &str| matches.get_one::<u32>(name).copied();
-    let asked = ToleranceChoices { samples: number("samples"), seed: number("seed") };
+    let asked = ToleranceChoices { samples: number("samples"), seed: number("seed"), linear: number("linear") };
     let stop = interrupt::flag();
     let mut bar = Progress::new("drawing designs");
     let found = loaded.tolerance(asked, &mut |fraction| {
@@ -83,7 +83,7 @@ fn repeat_command(matches: &ArgMatches, file: &std::path::Path) -> String {
     for setting in &choices.set {
         let _ = write!(command, " --set {}", quote(setting));
     }
-    for name in ["samples", "seed"] {
+    for name in ["samples", "seed", "linear"] {
         if let Some(number) = matches.get_one::<u32>(name) {
             let _ = write!(command, " --{name} {number}");
         }

@@ -27,7 +27,9 @@ fn lay(document: &mut DocumentMut, parts: &[&str], value: Value, variant: Option
         Value::InlineTable(table) => {
             table.into_iter().try_for_each(|(key, value)| lay(document, &[parts, &[key.as_str()]].concat(), value, variant))
         }
-        value => {
+        mut value => {
+            // Spaces of the table that it was typed in.
+            value.decor_mut().clear();
             let new = New { path: &parts.join("."), value, list: None };
             set(document.as_table_mut(), parts, &new, true)?;
             let own = variant.and_then(|name| document.get_mut("variants")?.as_table_like_mut()?.get_mut(name)?.as_table_like_mut());
