@@ -27,7 +27,7 @@ fn characteristic_100(bencher: Bencher<'_, '_>) {
     let design = design();
     let all = |design: &Design| {
         let spring = clutch(&design.built, design.source).expect("a spring");
-        let statics = Statics::new(&design.built, &spring, design.built.friction, 0.0);
+        let statics = Statics::new(&design.built, &spring, design.built.friction, 0.0).expect("friction of the file");
         (1..=100).map(|i| statics.output(1e-3 * f64::from(i)).1).sum::<f64>()
     };
     bencher.counter(ItemsCount::new(100_usize)).bench_local(|| all(black_box(&design)));

@@ -92,9 +92,15 @@ fn solve() -> Command {
 }
 
 const SYNTHESISE_HELP: &str = "\
-The file says what is wanted and not how: [requirements] with a force band and a stroke, [material], and [synthesise] with the thinnest
-beam that can be made; room, depth of the plates, plates behind each other and the number of candidates are optional. Shapes of a catalogue
-are sized for it, analysed in full and ranked by the room that they take. What the file says of a design, a layout or a load is not used.
+The file says what is wanted and not how: [requirements], [material] where the family has one, and [synthesise] with what may be used and
+how large it may be. What the file says of a design is not used. By `mechanism`:
+
+  compliant  a force band over a stroke, and the thinnest beam that can be made: shapes of a catalogue are sized for it
+  cam        a force over the stroke: springs of a catalogue or free ones, and the cam that goes with them
+  capstan    torque, stiffness and lost motion at a ratio: drums, turns and cables of a catalogue, with the smallest preload
+  lavt       torques, speed drop and efficiency, and the friction with its range: all gear sets and springs of a grid
+
+Each design is analysed in full; they are ranked by the room that they take.
 
 Writes FILE-1-SHAPE.toml, …, each of which `forcewright solve` finds to meet everything, report.html and result.json. If nothing meets
 everything: the nearest design, and for each limit the nearest value that would do.
@@ -121,7 +127,7 @@ fn synthesise() -> Command {
                 .long("set")
                 .value_name("KEY=VALUE")
                 .action(ArgAction::Append)
-                .help("Replace one value for this run, such as requirements.travel=\"8 mm\" (may be repeated)"),
+                .help("Replace one value for this run, such as synthesise.candidates=3 (may be repeated)"),
         )
         .arg(json())
         .after_help(SYNTHESISE_HELP)

@@ -8,7 +8,7 @@ use forcewright_study::differences::jacobian_with_steps;
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
 use forcewright_study::task::{self, Limit, Step, Task};
 
-use crate::metrics::{Metrics, Values};
+use crate::metrics::{self, Metrics, Values};
 use crate::objective::{Goal, goal_of};
 use crate::studies::{Free, Objective};
 
@@ -71,8 +71,8 @@ pub trait Measuring: Send + Sync + 'static {
     /// What the requirements ask of a metric, besides its limits by name.
     fn asked(design: &Self::Design, name: &str) -> Vec<Asked>;
 
-    /// Limits by name: smallest and largest.
-    fn limited(design: &Self::Design, name: &str) -> Vec<[Option<f64>; 2]>;
+    /// Limits on its metrics.
+    fn limits(design: &Self::Design) -> &[metrics::Limit];
 }
 
 /// See the module.
@@ -148,8 +148,8 @@ fn measure_of<F: Measuring>(design: &F::Design, index: usize) -> Measure {
     for asked in F::asked(design, info.name) {
         (lower, upper, requirement) = (lower.max(asked.lower), upper.min(asked.upper), asked.requirement);
     }
-    for [min, max] in F::limited(design, info.name) {
-        (lower, upper, requirement) = (lower.max(min.unwrap_or(lower)), upper.min(max.unwrap_or(upper)), info.name);
+    for limit in F::limits(design).iter().filter(|l| l.metric == index) {
+        (lower, upper, requirement) = (lower.max(limit.min.unwrap_or(lower)), upper.min(limit.max.unwrap_or(upper)), info.name);
     }
     Measure { name: info.name.to_owned(), requirement: requirement.to_owned(), unit: info.dimension.si_symbol(), lower, upper }
 }

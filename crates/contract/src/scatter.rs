@@ -7,8 +7,8 @@ use crate::numbers::Number;
 use crate::read::deferred_quantities;
 use crate::studies::{Free, Scatter, Tolerance, chosen};
 
-/// Sections whose numbers scatter: what is made, what it is made of, and how far making misses it.
-const ROOTS: [&str; 3] = ["design", "material", "errors"];
+/// Sections whose numbers scatter: what is made, what it is made of, how far making misses it, and the motor that drives it.
+const ROOTS: [&str; 4] = ["design", "material", "errors", "motor"];
 /// Most numbers that scatter at once: each takes two coordinates of a point.
 const MOST: usize = 128;
 

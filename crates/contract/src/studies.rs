@@ -249,12 +249,12 @@ pub struct Free {
 }
 
 impl Optimise {
-    /// The numbers that may change, each once, in the order of the design. Only the design may change: what is required, what it is made
-    /// of and what happens to it stays.
+    /// The numbers that may change, each once, in the order of the design. Only the design may change, and the motor that is chosen for it:
+    /// what is required, what it is made of and what happens to it stays.
     pub fn free(&self, numbers: &[Number], diagnostics: &mut Diagnostics) -> Vec<Free> {
         let mut found: Vec<Option<Free>> = vec![None; numbers.len()];
         for member in &self.variables {
-            for index in chosen(&member.name, &["design"], numbers, diagnostics) {
+            for index in chosen(&member.name, &["design", "motor"], numbers, diagnostics) {
                 if let Some(free) = freedom(&member.value, &numbers[index], member.name.span, diagnostics) {
                     // The later, usually the narrower pattern, wins.
                     found[index] = Some(free);
@@ -273,7 +273,9 @@ pub fn chosen(pattern: &Located<String>, roots: &[&str], numbers: &[Number], dia
         let all = || numbers.iter().filter(|n| eligible(n)).map(|n| n.path.as_str());
         let known = numbers.iter().any(|n| matches(&pattern.value, &n.path));
         let help = if known {
-            format!("only numbers below {} take part", roots.iter().map(|r| format!("`{r}`")).collect::<Vec<_>>().join(" and "))
+            // Sections that the file does not have are no help.
+            let there = roots.iter().filter(|root| numbers.iter().any(|n| n.path.split('.').next() == Some(root)));
+            format!("only numbers below {} take part", there.map(|r| format!("`{r}`")).collect::<Vec<_>>().join(" and "))
         } else {
             closest(&pattern.value, all()).map_or_else(
                 || format!("paths are written as `{}`, with `*` for any member", all().next().unwrap_or("design.thickness")),

@@ -1,25 +1,12 @@
 //! Seeded sets of requirements for cams: each gives designs that the full analysis confirms, or the limit that blocks.
 
+mod seeded;
+
 use std::fmt::Write as _;
-use std::path::Path;
 
 use forcewright::base::maths;
-use forcewright::{Choices, DiskFiles, Loaded, SynthesisTask, Synthesised};
-
-/// `SplitMix64` of Steele, Lea & Flood 2014: the same sets on every machine.
-struct Sequence(u64);
-
-impl Sequence {
-    /// Between two values, spread evenly over their ratio.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        let unit = f64::from(u32::try_from((z ^ (z >> 31)) >> 32).expect("32 bits")) / 4_294_967_296.0;
-        low * maths::powf(high / low, unit)
-    }
-}
+use forcewright::{DiskFiles, SynthesisTask};
+use seeded::{Sequence, assert_stands, found};
 
 /// 5 to 300 N over 20 to 300 mm, constant or with a slope, in rooms from tight to ample.
 fn sets(count: usize) -> Vec<String> {
@@ -48,11 +35,6 @@ fn sets(count: usize) -> Vec<String> {
         .collect()
 }
 
-fn found(text: &str) -> Synthesised {
-    let task = SynthesisTask::from_text("asked.toml", text, &[]).map_err(|e| e.render(false)).expect("understood");
-    task.run(Path::new("asked.toml"), &|_| true)
-}
-
 /// Rate of a helical spring of steel wire, G d⁴/(8 D³ n), with G of EN 10270-1.
 fn rate_n_per_m([wire_m, mean_m, coils]: [f64; 3]) -> f64 {
     81.5e9 * maths::powi(wire_m, 4) / (8.0 * maths::powi(mean_m, 3) * coils)
@@ -69,9 +51,7 @@ fn solved(sets: &[String]) -> usize {
         }
         met += 1;
         let best = &found.designs[0];
-        let loaded = Loaded::from_text(&best.file, &best.text, &Choices::default()).map_err(|e| e.render(false)).expect("a project");
-        let outcome = loaded.solve(&best.file, "", &mut |_| true).outcome;
-        assert!(outcome.requirements_met(), "{}", best.text);
+        assert_stands(best);
         // Its springs can be wound: their rate is the one that is mounted.
         let state = &best.proposal.state;
         let wound = rate_n_per_m([state[5], state[6], state[7]]);

@@ -11,6 +11,8 @@ pub enum Stroke {
     Second,
     /// A third result: dash-dotted, another colour.
     Third,
+    /// A result beside the third: dotted, in its colour.
+    Fourth,
     /// A reference: dashed, grey.
     Reference,
     /// A limit: dashed, warning colour.
@@ -65,6 +67,8 @@ pub struct VerticalSpan {
     pub to: f64,
     /// Text above it.
     pub label: String,
+    /// Hatched, where nothing goes; else tinted.
+    pub hatched: bool,
 }
 
 /// A marked point.

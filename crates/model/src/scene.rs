@@ -34,6 +34,8 @@ pub enum Role {
 pub enum Look {
     /// A solid that stays where it is: grey, edged.
     Plate,
+    /// What is cut out of a solid: paper-coloured, edged as that.
+    Opening,
     /// A solid that moves: paper-coloured, with a thick edge.
     Moving,
     /// A bar that moves: grey with edges along it.

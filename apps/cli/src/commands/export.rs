@@ -11,7 +11,7 @@ use forcewright::fabricate::{Format, Options};
 use forcewright::model::{Body, Section};
 use forcewright::{Choices, DiskFiles, Exported, Loaded};
 
-use super::solve::{repeat_command, requirement_table, show};
+use super::solve::{check_table, repeat_command, show};
 use super::{choices, refuse};
 use crate::{exit, output};
 
@@ -115,7 +115,7 @@ fn summary(exported: &Exported) -> String {
             let _ = writeln!(text, "  {note}");
         }
     }
-    let _ = write!(text, "\n{}", requirement_table(&exported.set.checks));
+    let _ = write!(text, "\n{}", check_table("check", &exported.set.checks));
     for check in &exported.set.checks {
         if let Some(advice) = &check.advice {
             let _ = writeln!(text, "\n{} {}: {advice}", check.code, check.name);

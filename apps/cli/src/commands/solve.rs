@@ -120,10 +120,15 @@ pub(super) fn summary(report: &Report, shown: usize) -> String {
         let _ = writeln!(out, "variant {variant}");
     }
     out.push('\n');
-    if outcome.checks.is_empty() {
+    let (required, further): (Vec<&Check>, Vec<&Check>) = outcome.checks.iter().partition(|c| c.required);
+    if required.is_empty() {
         out.push_str("no requirements given\n");
     } else {
-        out.push_str(&requirement_table(&outcome.checks));
+        out.push_str(&check_table("requirement", required.iter().copied()));
+    }
+    if !further.is_empty() {
+        out.push('\n');
+        out.push_str(&check_table("further check", further.iter().copied()));
     }
     let advice: Vec<&Check> = outcome.checks.iter().filter(|c| c.advice.is_some()).collect();
     if !advice.is_empty() {
@@ -154,10 +159,12 @@ pub(super) fn summary(report: &Report, shown: usize) -> String {
     if let Some(advice) = &outcome.status.advice {
         let _ = writeln!(out, "  help: {advice}");
     }
-    let count = |state| outcome.checks.iter().filter(|c| c.required && c.state == state).count();
-    let (missed, unknown, met) = (count(CheckState::Missed), count(CheckState::NotAssessed), count(CheckState::Met));
-    if missed + unknown + met > 0 {
-        let _ = writeln!(out, "requirements: {met} met, {missed} missed, {unknown} not assessed");
+    for (what, checks) in [("requirements", &required), ("further checks", &further)] {
+        let count = |state| checks.iter().filter(|c| c.state == state).count();
+        let [met, missed, unknown] = [CheckState::Met, CheckState::Missed, CheckState::NotAssessed].map(count);
+        if !checks.is_empty() {
+            let _ = writeln!(out, "{what}: {met} met, {missed} missed, {unknown} not assessed");
+        }
     }
     out
 }
@@ -171,9 +178,9 @@ fn margin(margin: f64) -> String {
     }
 }
 
-/// The requirements as a table.
-pub(super) fn requirement_table(checks: &[Check]) -> String {
-    let mut rows = vec![["", "requirement", "found", "limit", "margin", "code"].map(str::to_owned).to_vec()];
+/// Checks as a table.
+pub(super) fn check_table<'a>(what: &str, checks: impl IntoIterator<Item = &'a Check>) -> String {
+    let mut rows = vec![["", what, "found", "limit", "margin", "code"].map(str::to_owned).to_vec()];
     for check in checks {
         let mark = match check.state {
             CheckState::Met => "✓ met",

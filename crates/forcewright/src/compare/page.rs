@@ -8,7 +8,7 @@ use super::{Comparison, action_of, axes, unit};
 use crate::VERSION;
 
 /// Strokes that a reader can tell from each other; so many curves are drawn.
-const STROKES: [Stroke; 4] = [Stroke::Main, Stroke::Second, Stroke::Third, Stroke::Reference];
+const STROKES: [Stroke; 4] = [Stroke::Main, Stroke::Second, Stroke::Third, Stroke::Fourth];
 
 impl Comparison {
     /// `report.html`. `command` repeats this run.

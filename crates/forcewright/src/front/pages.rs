@@ -258,7 +258,7 @@ impl Front {
             let (from, to) = (half(at.checked_sub(1).and_then(|b| order.get(b))), half(order.get(at + 1)));
             match spans.last_mut().filter(|(group, _)| *group == groups[*i]) {
                 Some((_, span)) => span.to = to,
-                None => spans.push((groups[*i], VerticalSpan { from, to, label: format!("design {}", groups[*i]) })),
+                None => spans.push((groups[*i], VerticalSpan { from, to, label: format!("design {}", groups[*i]), hatched: false })),
             }
         }
         if spans.len() < 2 { Vec::new() } else { spans.into_iter().map(|s| s.1).collect() }

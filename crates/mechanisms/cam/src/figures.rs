@@ -250,7 +250,7 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
     let mut plot = plot(travel_axis(design), force_axis(design, "force", "Force F"), all);
     require(design, behaviour, &mut plot);
     let [from, to] = behaviour.window_m;
-    plot.spans.push(VerticalSpan { from, to, label: "window".to_owned() });
+    plot.spans.push(VerticalSpan { from, to, label: "window".to_owned(), hatched: false });
     let mut caption = "The force on the slider at rest, moving along its travel and back.".to_owned();
     if let (Some(area), Some(up), Some(down)) = (measured.get("loop_area"), measured.get("force_up_mean"), measured.get("force_down_mean"))
     {

@@ -1,13 +1,13 @@
 //! Rules that are the same for every cam: limits, springs, contact.
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
-use forcewright_contract::judge::Comparison;
+use forcewright_contract::judge::{Comparison, limited};
 use forcewright_elements::hertz::first_yield_pressure_pa;
 use forcewright_model::{Check, Sense};
 
 use crate::analysis::Measured;
 use crate::design::{Design, DisplayUnits, Material, Requirements};
-use crate::metrics::METRICS;
+use crate::metrics::{CamMetrics, METRICS};
 
 /// The unit in which people are shown a metric.
 pub(crate) fn display_unit(requirements: Option<&Requirements>, units: &DisplayUnits, index: usize) -> Unit {
@@ -76,24 +76,8 @@ impl<'a> Rules<'a> {
     }
 
     pub(crate) fn base(&self, code: &'static str, name: &str, title: &str, metric: &str) -> Comparison {
-        let index = METRICS.iter().position(|m| m.name == metric).unwrap_or(0);
-        Comparison {
-            code,
-            name: name.to_owned(),
-            title: title.to_owned(),
-            required: true,
-            value: self.measured.value(index),
-            limit: None,
-            sense: Sense::AtMost,
-            dimension: METRICS[index].dimension,
-            display: display_unit(self.requirements, self.units, index),
-            scale: None,
-            basis: METRICS[index].doc.to_owned(),
-            fix: String::new(),
-            missing: self.why_missing(metric),
-            partial: false,
-            broken: false,
-        }
+        let display = |i| display_unit(self.requirements, self.units, i);
+        Comparison::of_metric(code, [name, title], metric, self.measured, display, self.why_missing(metric))
     }
 
     /// CAM004: work lost between up and down.
@@ -117,17 +101,7 @@ impl<'a> Rules<'a> {
 
     /// CAM012: limits on metrics.
     pub(crate) fn limits(&self, requirements: &Requirements) -> Vec<Check> {
-        let mut all = Vec::new();
-        for limit in &requirements.limits {
-            let Some(info) = METRICS.get(limit.metric) else { continue };
-            for (bound, sense, suffix) in [(limit.min, Sense::AtLeast, "at least"), (limit.max, Sense::AtMost, "at most")] {
-                let Some(bound) = bound else { continue };
-                let base = self.base("CAM012", info.name, &format!("{} ({suffix})", info.name), info.name);
-                let fix = "change the design, or the limit".to_owned();
-                all.push(Comparison { limit: Some(bound), sense, fix, ..base }.judge());
-            }
-        }
-        all
+        limited::<CamMetrics>(&requirements.limits, "change the design, or the limit", |name, title| self.base("CAM012", name, title, name))
     }
 
     /// Why a metric has no value.

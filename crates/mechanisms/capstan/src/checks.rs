@@ -78,24 +78,8 @@ struct Context<'a> {
 
 impl Context<'_> {
     fn base(&self, code: &'static str, name: &str, title: &str, metric: &str) -> Comparison {
-        let index = METRICS.iter().position(|m| m.name == metric).unwrap_or(0);
-        Comparison {
-            code,
-            name: name.to_owned(),
-            title: title.to_owned(),
-            required: true,
-            value: self.measured.value(index),
-            limit: None,
-            sense: Sense::AtMost,
-            dimension: METRICS[index].dimension,
-            display: display_unit(self.design.requirements.as_ref(), &self.design.units, index),
-            scale: None,
-            basis: METRICS[index].doc.to_owned(),
-            fix: String::new(),
-            missing: self.missing(),
-            partial: false,
-            broken: false,
-        }
+        let display = |i| display_unit(self.design.requirements.as_ref(), &self.design.units, i);
+        Comparison::of_metric(code, [name, title], metric, self.measured, display, self.missing())
     }
 
     fn torque(&self, nm: f64) -> String {

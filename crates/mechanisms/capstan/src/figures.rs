@@ -197,7 +197,12 @@ fn tension_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
     let preload_n = design.built.cables.first()?.preload_left_n(&design.built);
     let text = format!("preload {}", format_si(preload_n, &design.units.force, 4));
     plot.levels.push(HorizontalLine { at: preload_n, label: text, stroke: Stroke::Reference });
-    plot.spans.extend(along.spans().into_iter().map(|(from, to, label)| forcewright_model::VerticalSpan { from, to, label }));
+    plot.spans.extend(along.spans().into_iter().map(|(from, to, label)| forcewright_model::VerticalSpan {
+        from,
+        to,
+        label,
+        hatched: false,
+    }));
     let torque = format_si(loaded.torque_nm, &design.units.torque, 4);
     let which = if design.built.cables.len() > 1 { "the first cable" } else { "the cable" };
     let caption =

@@ -1,7 +1,7 @@
 //! The family seen by studies: metrics at any values of the numbers that vary.
 
 use forcewright_contract::measuring::{Asked, Measuring};
-use forcewright_contract::metrics::Values;
+use forcewright_contract::metrics::{Limit, Values};
 use forcewright_contract::objective::{Goal, Way};
 use forcewright_elements::grooves::Groove;
 
@@ -208,8 +208,7 @@ impl Measuring for CableDrives {
         asked.into_iter().collect()
     }
 
-    fn limited(design: &Design, name: &str) -> Vec<[Option<f64>; 2]> {
-        let limits = design.requirements.iter().flat_map(|r| &r.limits);
-        limits.filter(|l| l.name::<CapstanMetrics>() == name).map(|l| [l.min, l.max]).collect()
+    fn limits(design: &Design) -> &[Limit] {
+        design.requirements.as_ref().map_or(&[], |r| &r.limits)
     }
 }

@@ -132,6 +132,7 @@ fn force_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) -> 
             from: usable.start,
             to: usable.end,
             label: format!("inside the band: {}", format_si(usable.length(), length, 4)),
+            hatched: false,
         });
         caption = format!(
             "The force stays inside the band from {} to {}. ",

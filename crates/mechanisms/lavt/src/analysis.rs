@@ -48,6 +48,8 @@ pub struct Behaviour {
     pub worst: Statics,
     /// Torques as designed with the least and the largest friction.
     pub slippery: [Statics; 2],
+    /// What requirements see over the range of friction and the corners of the tolerances.
+    pub over: Over,
     /// The gears.
     pub train: Train,
     /// The hand that closes; `None` where motor, hand, an inertia or the opening are not given.
@@ -82,29 +84,77 @@ impl Behaviour {
         let train = Train::of(design).map_err(NoTransmission::Gears)?;
         let loss = train.mesh_loss();
         let clutch = clutch(built, design.source).map_err(NoTransmission::Spring)?;
-        let statics = Statics::new(built, &clutch, built.friction, loss);
-        let worst = worst_of(design, loss, &statics).unwrap_or(statics);
-        let slippery = design.frictions().map(|friction| Statics::new(built, &clutch, friction, loss));
+        let with = |friction| Statics::new(built, &clutch, friction, loss).map_err(NoTransmission::Spring);
+        let statics = with(built.friction)?;
+        let [least, largest] = design.frictions();
+        let slippery = [with(least)?, with(largest)?];
+        let (worst, over) = at_corners(design, loss, &statics).map_err(NoTransmission::Spring)?;
         let grasp = closing::grasp(design, &statics, &clutch);
-        Ok(Self { clutch, statics, worst, slippery, train, grasp })
+        Ok(Self { clutch, statics, worst, slippery, over, train, grasp })
     }
 }
 
-/// The corner that holds the least torque at the input, with the least friction; one in which the spring is loose on the hub, or in the
-/// bore from the beginning, holds nothing.
-fn worst_of(design: &Design, loss: f64, nominal: &Statics) -> Option<Statics> {
-    let [friction, _] = design.frictions();
+/// Ends of what requirements see over the range of friction and the corners of the tolerances of wire, spring, hub and bore.
+///
+/// The ends of the friction are enough: the transition rises with it, and the output torque rises as long as the clutch slips and falls
+/// from there on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Over {
+    /// Least and largest torque at the output at which mode I ends, N·m.
+    pub transition_output_nm: [f64; 2],
+    /// Least torque at the output with the required torque at the input, N·m; `None` where none is required.
+    pub output_nm: Option<f64>,
+    /// Least efficiency with it; 0 where at one of them it is blocked, or the clutch slips.
+    pub efficiency: Option<f64>,
+}
+
+impl Over {
+    fn of(statics: &Statics, input_nm: Option<f64>) -> Self {
+        Self {
+            transition_output_nm: [statics.transition_output_nm(); 2],
+            output_nm: input_nm.map(|nm| statics.output(nm).1),
+            efficiency: input_nm.map(|nm| statics.efficiency(nm).unwrap_or(0.0)),
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        let least = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a.min(b));
+        let ([low, high], [other_low, other_high]) = (self.transition_output_nm, other.transition_output_nm);
+        Self {
+            transition_output_nm: [low.min(other_low), high.max(other_high)],
+            output_nm: least(self.output_nm, other.output_nm),
+            efficiency: least(self.efficiency, other.efficiency),
+        }
+    }
+}
+
+/// The corner that holds the least torque at the input, with the least friction, and what requirements see at all of them. A corner in
+/// which the spring is loose on the hub, or in the bore from the beginning, holds nothing.
+fn at_corners(design: &Design, loss: f64, nominal: &Statics) -> Result<(Statics, Over), WrapSpringError> {
+    let [least, largest] = design.frictions();
+    let input_nm = design.requirements.as_ref().map(|r| r.input_nm);
     let nothing = Statics { hub_nm: 0.0, grip_nm: None, lock_nm: 0.0, ..*nominal };
-    let all = corners(design).map(|built| {
-        let spring = clutch(&built, design.source).ok().filter(|_| built.gaps_m().iter().all(|gap_m| *gap_m > 0.0));
-        spring.map_or(nothing, |spring| Statics::new(&built, &spring, friction, loss))
-    });
     // Where the bore is not reached, the ratio of the torques says how far it is from it.
     let rank = |s: &Statics| (s.grip_nm.is_some(), if s.grip_nm.is_some() { s.held_input_nm() } else { s.hub_nm / s.transition_nm });
-    all.min_by(|a, b| {
-        let ((one, x), (other, y)) = (rank(a), rank(b));
-        one.cmp(&other).then(x.total_cmp(&y))
-    })
+    let mut found: Option<(Statics, Over)> = None;
+    // Where nothing scatters all corners are the drawing.
+    for built in corners(design).take(if design.scatters() { usize::MAX } else { 1 }) {
+        let spring = clutch(&built, design.source).ok().filter(|_| built.gaps_m().iter().all(|gap_m| *gap_m > 0.0));
+        let [weak, strong] = match &spring {
+            Some(spring) => [Statics::new(&built, spring, least, loss)?, Statics::new(&built, spring, largest, loss)?],
+            None => [nothing; 2],
+        };
+        let over = Over::of(&weak, input_nm).and(Over::of(&strong, input_nm));
+        found = Some(match found {
+            None => (weak, over),
+            Some((worst, all)) => {
+                let ((one, x), (other, y)) = (rank(&weak), rank(&worst));
+                let is_worse = one.cmp(&other).then(x.total_cmp(&y)).is_lt();
+                (if is_worse { weak } else { worst }, all.and(over))
+            }
+        });
+    }
+    Ok(found.unwrap_or_else(|| (*nominal, Over::of(nominal, input_nm))))
 }
 
 /// Every metric that the behaviour has.
@@ -128,6 +178,9 @@ fn measure_characteristic(m: &mut Measured, design: &Design, behaviour: &Behavio
     let shifts = statics.grip_nm.is_some();
     m.set("transition_torque_input", input_nm);
     m.set("transition_torque_output", output_nm);
+    let Over { transition_output_nm: [low_nm, high_nm], .. } = behaviour.over;
+    m.set("transition_torque_output_low", low_nm);
+    m.set("transition_torque_output_high", high_nm);
     let end_nm = statics.plateau_end_nm(output_nm).max(input_nm);
     m.set("plateau_end_input", shifts.then_some(end_nm));
     m.set("plateau_width_input", shifts.then_some(end_nm - input_nm));
@@ -137,7 +190,9 @@ fn measure_characteristic(m: &mut Measured, design: &Design, behaviour: &Behavio
     let Some(required) = &design.requirements else { return };
     let most_nm = statics.output(required.input_nm).1;
     m.set("output_torque_max", most_nm);
+    m.set("output_torque_max_low", behaviour.over.output_nm);
     m.set("efficiency_max", statics.efficiency(required.input_nm));
+    m.set("efficiency_max_low", behaviour.over.efficiency);
     m.set("force_gain", most_nm / required.input_nm);
     m.set("energy_gain", most_nm * most_nm / (required.input_nm * required.input_nm));
 }
@@ -232,6 +287,7 @@ fn measure_closing(m: &mut Measured, design: &Design, behaviour: &Behaviour) {
         return;
     }
     m.set("peak_current", grasp.peak_a());
+    m.set("motor_speed_max", motor.reduction * grasp.peak_input_rad_per_s());
     let Some(force_n) = grasp.force_n() else { return };
     m.set("grasp_force", force_n);
     m.set("grasp_time", grasp.grasp_s());

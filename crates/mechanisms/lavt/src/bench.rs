@@ -107,8 +107,13 @@ pub(crate) fn bench_of(spec: &Spec, ratio: f64, diagnostics: &mut Diagnostics) -
     loads.dedup_by(|a, b| a.to_bits() == b.to_bits());
     let fitted = (loads.len() >= LEAST_LOADS).then(|| Bench::of(runs, ratio)).flatten();
     if fitted.is_none() {
+        let message = match loads.len() {
+            1 => "one mass: too few for a line".to_owned(),
+            few if few < LEAST_LOADS => format!("{few} masses: too few for a line"),
+            enough => format!("no line can be laid through the runs of {enough} masses"),
+        };
         diagnostics.push(
-            Diagnostic::error("E0831", file.span, format!("{} masses: too few for a line", loads.len()))
+            Diagnostic::error("E0831", file.span, message)
                 .label("measured here")
                 .help("hang at least three masses on the output, and three in each mode for the shift between them"),
         );

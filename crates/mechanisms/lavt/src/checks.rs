@@ -2,19 +2,22 @@
 
 use forcewright_base::maths;
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
-use forcewright_contract::judge::Comparison;
+use forcewright_contract::judge::{Comparison, limited};
 use forcewright_model::{Check, Sense};
 
 use crate::analysis::{Behaviour, PERMISSIBLE};
 use crate::closing::Ending;
 use crate::design::{Design, DisplayUnits, Requirements, Source};
 use crate::gears::Train;
-use crate::metrics::{METRICS, Measured};
+use crate::metrics::{LavtMetrics, METRICS, Measured};
 
 /// Least contact ratio: below it teeth let go before the next ones meet, with some room for errors of making.
 pub(crate) const LEAST_CONTACT_RATIO: f64 = 1.1;
 /// Least gap between the tips of neighbouring planets, modules.
 pub(crate) const LEAST_GAP: f64 = 0.5;
+
+/// What the event of a force that is reached may be off by, relative.
+const EVENT_ERROR: f64 = 1e-6;
 
 /// The unit in which people are shown a metric.
 pub(crate) fn display_unit(requirements: Option<&Requirements>, units: &DisplayUnits, index: usize) -> Unit {
@@ -27,11 +30,18 @@ pub(crate) fn display_unit(requirements: Option<&Requirements>, units: &DisplayU
         D::Force => units.force.clone(),
         D::Torque => units.torque.clone(),
         D::Stress => units.stress.clone(),
+        D::AngularSpeed => units.speed.clone(),
         D::Energy => named("J"),
         D::Volume => named("cm^3"),
         D::Ratio if info.name.starts_with("efficiency") || info.name == "mesh_efficiency" => named("%"),
         other => Unit::si(other),
     })
+}
+
+/// The force that a closing must reach, less what its event may be off by, N; `None` where none is wanted or there is nothing to grasp.
+pub(crate) fn wanted_force_n(design: &Design) -> Option<f64> {
+    let hand = design.hand.as_ref().filter(|h| h.object_n_per_m.is_some())?;
+    Some((1.0 - EVENT_ERROR) * hand.force_n?)
 }
 
 /// Requirements in the order of the language, then the family's own rules.
@@ -58,6 +68,8 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.push(context.interference());
     all.extend(["sun", "ring"].map(|with| context.contact(with)));
     all.extend(context.teeth());
+    all.extend(context.motor());
+    all.extend(context.grasp());
     all
 }
 
@@ -69,24 +81,9 @@ struct Context<'a> {
 
 impl Context<'_> {
     fn base(&self, code: &'static str, name: &str, title: &str, metric: &str) -> Comparison {
-        let index = METRICS.iter().position(|m| m.name == metric).unwrap_or(0);
-        Comparison {
-            code,
-            name: name.to_owned(),
-            title: title.to_owned(),
-            required: true,
-            value: self.measured.value(index),
-            limit: None,
-            sense: Sense::AtLeast,
-            dimension: METRICS[index].dimension,
-            display: display_unit(self.design.requirements.as_ref(), &self.design.units, index),
-            scale: None,
-            basis: METRICS[index].doc.to_owned(),
-            fix: String::new(),
-            missing: self.missing(metric),
-            partial: false,
-            broken: false,
-        }
+        let display = |i| display_unit(self.design.requirements.as_ref(), &self.design.units, i);
+        let base = Comparison::of_metric(code, [name, title], metric, self.measured, display, self.missing(metric));
+        Comparison { sense: Sense::AtLeast, ..base }
     }
 
     /// Why a value is missing.
@@ -101,9 +98,8 @@ impl Context<'_> {
             }
             "spring_safety_factor" => "give `material.spring.use` or `tensile_strength`",
             "tooth_bending_stress" | "flank_pressure" => "give `material.gears`",
-            "closing_time" | "grasp_time" | "grasp_force" | "energy_per_grasp" | "peak_current" | "grasps_per_charge" | "holding_power" => {
-                self.missing_closing(metric)
-            }
+            "closing_time" | "grasp_time" | "grasp_force" | "energy_per_grasp" | "peak_current" | "motor_speed_max"
+            | "grasps_per_charge" | "holding_power" => self.missing_closing(metric),
             "performance_index" => "give `hand.speed`",
             "energy_loss_index" => "give `[motor]`, and `hand.speed`; or there is no mode II with the required torque",
             "stall_power" => "give `[motor]`; or there is no mode II with the required torque",
@@ -150,12 +146,36 @@ impl Context<'_> {
         self.design.built.bore_m + 2.0 * now_m * (spring_nm / clutch.transition_nm() - 1.0)
     }
 
+    /// The same check over the range of friction and the tolerances: asked for as well as that of the drawing, but in the paper's model,
+    /// which knows neither.
+    fn everywhere(&self, drawn: &Comparison, metric: &str, limit: f64) -> Option<Check> {
+        if !self.design.scatters() {
+            return None;
+        }
+        let title = format!("{}, over friction and tolerances", drawn.title);
+        let base = self.base(drawn.code, &format!("{}_always", drawn.name), &title, metric);
+        let shown = |si: f64| format_si(si, &base.display, 4);
+        let fix = match drawn.value {
+            Some(value) => format!(
+                "as drawn it is {}: a design farther from the limit, closer fits, or a friction that is known better; `forcewright tolerance` shows which",
+                shown(value)
+            ),
+            None => drawn.fix.clone(),
+        };
+        let basis = "the worst of both ends of the friction and all corners of wire, spring, hub and bore".to_owned();
+        let required = self.design.source == Source::Corrected;
+        Some(Comparison { required, limit: Some(limit), sense: drawn.sense, fix, basis, ..base }.judge())
+    }
+
     /// LAVT001: torque at which it shifts.
     fn transition(&self, requirements: &Requirements) -> Vec<Check> {
         let mut all = Vec::new();
         let statics = &self.behaviour.statics;
-        let senses = [("transition_torque_min", Sense::AtLeast), ("transition_torque_max", Sense::AtMost)];
-        for (wanted, (name, sense)) in requirements.transition_nm.iter().zip(senses) {
+        let senses = [
+            ("transition_torque_min", Sense::AtLeast, "transition_torque_output_low"),
+            ("transition_torque_max", Sense::AtMost, "transition_torque_output_high"),
+        ];
+        for (wanted, (name, sense, always)) in requirements.transition_nm.iter().zip(senses) {
             let Some(wanted_nm) = *wanted else { continue };
             let title = if sense == Sense::AtLeast { "Shifts late enough" } else { "Shifts early enough" };
             let base = self.base("LAVT001", name, title, "transition_torque_output");
@@ -169,14 +189,17 @@ impl Context<'_> {
                 )
             };
             let basis = "eqs. (19), (24), with the losses of mode I; where the spring slips first, the torque at which it does";
-            all.push(Comparison { limit: Some(wanted_nm), sense, fix, basis: basis.to_owned(), ..base }.judge());
+            let drawn = Comparison { limit: Some(wanted_nm), sense, fix, basis: basis.to_owned(), ..base };
+            let everywhere = self.everywhere(&drawn, always, wanted_nm);
+            all.push(drawn.judge());
+            all.extend(everywhere);
         }
         all
     }
 
     /// LAVT002: torque at the output.
-    fn output(&self, requirements: &Requirements) -> Option<Check> {
-        let wanted_nm = requirements.output_nm?;
+    fn output(&self, requirements: &Requirements) -> Vec<Check> {
+        let Some(wanted_nm) = requirements.output_nm else { return Vec::new() };
         let base = self.base("LAVT002", "output_torque", "Torque at the output", "output_torque_max");
         let statics = &self.behaviour.statics;
         let needed_nm = statics.plateau_end_nm(wanted_nm);
@@ -188,7 +211,9 @@ impl Context<'_> {
             Some(_) => format!("it needs {} at the input; or less friction of the hub, or a smaller ratio", self.torque(needed_nm)),
         };
         let basis = "eq. (17): τ_out = τ_in/R − τ_b, less losses, as far as the bore holds";
-        Some(Comparison { limit: Some(wanted_nm), fix, basis: basis.to_owned(), ..base }.judge())
+        let drawn = Comparison { limit: Some(wanted_nm), fix, basis: basis.to_owned(), ..base };
+        let everywhere = self.everywhere(&drawn, "output_torque_max_low", wanted_nm);
+        [drawn.judge()].into_iter().chain(everywhere).collect()
     }
 
     /// LAVT003: what is lost of the speed.
@@ -201,8 +226,8 @@ impl Context<'_> {
     }
 
     /// LAVT004: efficiency.
-    fn efficiency(&self, requirements: &Requirements) -> Option<Check> {
-        let wanted = requirements.efficiency?;
+    fn efficiency(&self, requirements: &Requirements) -> Vec<Check> {
+        let Some(wanted) = requirements.efficiency else { return Vec::new() };
         let base = self.base("LAVT004", "efficiency", "Efficiency with the input torque", "efficiency_max");
         let most_nm = (1.0 - self.behaviour.statics.proportional[1] - wanted) * requirements.input_nm / self.behaviour.statics.ratio;
         let fix = if most_nm > 0.0 {
@@ -214,22 +239,15 @@ impl Context<'_> {
         let basis = "eq. (18): η = 1 − R τ_b/τ_in, less losses";
         // Without a mode II the power goes into slip, or nothing turns.
         let value = base.value.or(Some(0.0));
-        Some(Comparison { value, limit: Some(wanted), fix, basis: basis.to_owned(), ..base }.judge())
+        let drawn = Comparison { value, limit: Some(wanted), fix, basis: basis.to_owned(), ..base };
+        let everywhere = self.everywhere(&drawn, "efficiency_max_low", wanted);
+        [drawn.judge()].into_iter().chain(everywhere).collect()
     }
 
     /// LAVT005: limits on metrics.
     fn limits(&self, requirements: &Requirements) -> Vec<Check> {
-        let mut all = Vec::new();
-        for limit in &requirements.limits {
-            let Some(info) = METRICS.get(limit.metric) else { continue };
-            for (bound, sense, suffix) in [(limit.min, Sense::AtLeast, "at least"), (limit.max, Sense::AtMost, "at most")] {
-                let Some(bound) = bound else { continue };
-                let base = self.base("LAVT005", info.name, &format!("{} ({suffix})", info.name), info.name);
-                let fix = "change the design, or the limit; `forcewright tolerance` shows which numbers move it".to_owned();
-                all.push(Comparison { limit: Some(bound), sense, fix, ..base }.judge());
-            }
-        }
-        all
+        let fix = "change the design, or the limit; `forcewright tolerance` shows which numbers move it";
+        limited::<LavtMetrics>(&requirements.limits, fix, |name, title| self.base("LAVT005", name, title, name))
     }
 
     /// What would let the spring reach the bore.
@@ -267,11 +285,10 @@ impl Context<'_> {
     /// LAVT007: also with the least friction and the worst gaps.
     fn shifts_always(&self) -> Check {
         let base = self.base("LAVT007", "shifts_always", "Shifts with the least friction and the worst gaps", "shift_margin_low");
-        let low = self.measured.get("gap_difference_low").unwrap_or(0.0);
-        let fix = format!(
-            "`δa − δb` falls to {}: a larger hub, closer fits of hub and bore, more turns on the hub, or a surface whose friction is known better",
-            self.length(low)
-        );
+        let falls =
+            self.measured.get("gap_difference_low").map_or_else(String::new, |m| format!("`δa − δb` falls to {}: ", self.length(m)));
+        let fix =
+            format!("{falls}a larger hub, closer fits of hub and bore, more turns on the hub, or a surface whose friction is known better");
         let required = self.design.source == Source::Corrected;
         let basis = "the same at the corners of the tolerances, with the least friction";
         Comparison { required, limit: Some(1.0), fix, basis: basis.to_owned(), ..base }.judge()
@@ -453,5 +470,30 @@ impl Context<'_> {
                 2.0,
             ),
         ]
+    }
+
+    /// LAVT022: the hand grasps with the force that is wanted.
+    fn grasp(&self) -> Option<Check> {
+        self.behaviour.grasp.as_ref()?;
+        let limit = wanted_force_n(self.design)?;
+        let base = self.base("LAVT022", "force", "Force of the grasp", "grasp_force");
+        let fix = "the motor stalls or the clutch slips below it: a larger `motor.reduction`, voltage or limit of the current".to_owned();
+        let basis = "force on the object in the end of the closing, against `hand.force`";
+        Some(Comparison { limit: Some(limit), fix, basis: basis.to_owned(), ..base }.judge())
+    }
+
+    /// LAVT021: the motor endures its speed.
+    fn motor(&self) -> Option<Check> {
+        let motor = self.design.motor.as_ref()?;
+        let most = motor.max_rad_per_s?;
+        let base = self.base("LAVT021", "motor_speed", "Speed of the motor", "motor_speed_max");
+        let fix = base.value.map_or_else(String::new, |value| {
+            let part = format_number(0.99 * most / value, 3);
+            format!(
+                "about {part} of the voltage; another reduction hardly helps, as a motor almost without load turns as its voltage has it"
+            )
+        });
+        let basis = "largest speed of the motor as the hand closes, against `motor.max_speed`";
+        Some(Comparison { limit: Some(most), sense: Sense::AtMost, fix, basis: basis.to_owned(), ..base }.judge())
     }
 }

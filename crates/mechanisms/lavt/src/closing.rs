@@ -94,6 +94,8 @@ pub struct Instant {
     pub current_rate: f64,
     /// Speed of the transmission's input, rad/s.
     pub input_rad_per_s: f64,
+    /// Its rate, rad/s².
+    pub input_rate: f64,
     /// Speed of its output, rad/s.
     pub output_rad_per_s: f64,
     /// Torque at its input, N·m. While everything stands, the least that holds.
@@ -216,19 +218,30 @@ impl Grasp {
 
     /// Largest current, A, between the states of the trace too.
     pub fn peak_a(&self) -> f64 {
-        let ends = self.trace.iter().map(|i| i.current_a).fold(0.0, f64::max);
+        self.peak(|i| [i.current_a, i.current_rate])
+    }
+
+    /// Largest speed of the transmission's input in either sense, rad/s, between the states of the trace too.
+    pub fn peak_input_rad_per_s(&self) -> f64 {
+        let [ahead, back] = [1.0, -1.0].map(|sign| self.peak(|i| [sign * i.input_rad_per_s, sign * i.input_rate]));
+        ahead.max(back)
+    }
+
+    /// Largest of a quantity that comes with its rate, at least 0.
+    fn peak(&self, of: impl Fn(&Instant) -> [f64; 2]) -> f64 {
+        let ends = self.trace.iter().map(|i| of(i)[0]).fold(0.0, f64::max);
         let inside = self.trace.windows(2).filter_map(|p| {
-            let (a, b) = (&p[0], &p[1]);
-            let length = b.time_s - a.time_s;
-            if length <= 0.0 || a.current_rate <= 0.0 || b.current_rate >= 0.0 {
+            let ([from, from_rate], [to, to_rate]) = (of(&p[0]), of(&p[1]));
+            let length = p[1].time_s - p[0].time_s;
+            if length <= 0.0 || from_rate <= 0.0 || to_rate >= 0.0 {
                 return None;
             }
             // Where the rate of the cubic is zero: one root, as it falls from above zero to below.
-            let (rise, [u, v]) = (b.current_a - a.current_a, [length * a.current_rate, length * b.current_rate]);
+            let (rise, [u, v]) = (to - from, [length * from_rate, length * to_rate]);
             let (c, d) = (3.0 * rise - 2.0 * u - v, u + v - 2.0 * rise);
             let rate = |x: f64| u + x * (2.0 * c + 3.0 * d * x);
             let share = forcewright_base::roots::root(rate, 0.0, 1.0, 1e-12).ok()?;
-            Some(hermite(share, length, [a.current_a, b.current_a], [a.current_rate, b.current_rate]))
+            Some(hermite(share, length, [from, to], [from_rate, to_rate]))
         });
         inside.fold(ends, f64::max)
     }

@@ -144,23 +144,35 @@ pub struct Scatter {
     pub bore_friction: [f64; 2],
 }
 
-/// How the parts are made, SI.
+/// How the parts are made, SI; `None` where the project does not say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Making {
-    /// Ring outside the roots of its teeth, m.
-    pub ring_wall_m: f64,
+    /// Ring outside the roots of its teeth, m: [`Making::wall_m`].
+    pub ring_wall_m: Option<f64>,
     /// Hole through the sun, m.
     pub sun_bore_m: Option<f64>,
     /// Holes through the planets, m.
     pub planet_bore_m: Option<f64>,
     /// Hole through the hub, m.
-    pub hub_bore_m: f64,
-    /// Plates of carrier and chassis, m.
-    pub plate_m: f64,
+    pub hub_bore_m: Option<f64>,
+    /// Plates of carrier and chassis, m: [`Making::plate_m`].
+    pub plate_m: Option<f64>,
     /// Outer diameter of the chassis, m.
     pub chassis_m: Option<f64>,
     /// Of the turned parts, kg/m³.
     pub density_kg_per_m3: Option<f64>,
+}
+
+impl Making {
+    /// Ring outside the roots of its teeth, by default 3 modules, m.
+    pub fn wall_m(&self, module_m: f64) -> f64 {
+        self.ring_wall_m.unwrap_or(3.0 * module_m)
+    }
+
+    /// Plates of carrier and chassis, by default 4 modules, m.
+    pub fn plate_m(&self, module_m: f64) -> f64 {
+        self.plate_m.unwrap_or(4.0 * module_m)
+    }
 }
 
 /// What the transmission must do, SI.
@@ -193,6 +205,8 @@ pub struct DisplayUnits {
     pub stress: Unit,
     /// Forces.
     pub force: Unit,
+    /// Speeds of the motor.
+    pub speed: Unit,
 }
 
 impl Design {
@@ -200,6 +214,12 @@ impl Design {
     pub fn frictions(&self) -> [[f64; 2]; 2] {
         let [hub, bore] = self.built.friction;
         [0, 1].map(|i| [(hub + self.scatter.hub_friction[i]).max(0.0), (bore + self.scatter.bore_friction[i]).max(0.0)])
+    }
+
+    /// Whether anything is given with a range or a tolerance.
+    pub fn scatters(&self) -> bool {
+        let Scatter { wire_m, inner_m, hub_m, bore_m, hub_friction, bore_friction } = self.scatter;
+        [wire_m, inner_m, hub_m, bore_m, hub_friction, bore_friction].iter().any(|[low, high]| low < high)
     }
 
     /// Whether friction is given as a range.
@@ -268,7 +288,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         gear_material,
         hand,
         motor,
-        making: making_of(spec, &built),
+        making: making_of(spec),
         bench,
         built,
         units: display_units(spec),
@@ -355,15 +375,14 @@ fn requirements_of(spec: &Spec, diagnostics: &mut Diagnostics) -> Option<Require
     })
 }
 
-fn making_of(spec: &Spec, built: &Built) -> Making {
+fn making_of(spec: &Spec) -> Making {
     let parts = &spec.parts;
-    let module_m = built.gears.module_m;
     Making {
-        ring_wall_m: si(&parts.ring_wall).unwrap_or(3.0 * module_m),
+        ring_wall_m: si(&parts.ring_wall),
         sun_bore_m: si(&parts.sun_bore),
         planet_bore_m: si(&parts.planet_bore),
-        hub_bore_m: si(&parts.hub_bore).unwrap_or(0.5 * built.hub_m),
-        plate_m: si(&parts.plate_thickness).unwrap_or(4.0 * module_m),
+        hub_bore_m: si(&parts.hub_bore),
+        plate_m: si(&parts.plate_thickness),
         chassis_m: si(&parts.chassis_diameter),
         density_kg_per_m3: si(&parts.density),
     }
@@ -446,5 +465,6 @@ fn display_units(spec: &Spec) -> DisplayUnits {
         torque: unit_or(spec.requirements.input_torque.as_ref(), "N*mm", Dimension::Torque),
         stress: Unit::parse("MPa").unwrap_or_else(|_| Unit::si(Dimension::Stress)),
         force: unit_or(spec.hand.force.as_ref(), "N", Dimension::Force),
+        speed: unit_or(spec.motor.max_speed.as_ref(), "rpm", Dimension::AngularSpeed),
     }
 }

@@ -11,12 +11,12 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "LAVT001",
         "Torque at which it shifts",
-        "Torque at the output at which the spring reaches the bore and mode I ends: R τ_t/(1 − R), with τ_t = EI δ_b/(r (r + δ_b)). It must lie above what the hand needs to close on nothing - friction, glove - or the fingers are slow from the beginning. A spring that slips first is judged by the torque at which it slips.",
+        "Torque at the output at which the spring reaches the bore and mode I ends: R τ_t/(1 − R), with τ_t = EI δ_b/(r (r + δ_b)). It must lie above what the hand needs to close on nothing - friction, glove - or the fingers are slow from the beginning. A spring that slips first is judged by the torque at which it slips. Judged as drawn, and over the range of friction and the corners of the tolerances.",
     ),
     code(
         "LAVT002",
         "Torque at the output",
-        "Torque at the output with the required torque at the input, τ_in/R − τ_b less losses, as far as the bore holds. A spring that slips before it shifts, or a bore that lets go, limits it to less.",
+        "Torque at the output with the required torque at the input, τ_in/R − τ_b less losses, as far as the bore holds. A spring that slips before it shifts, or a bore that lets go, limits it to less. Judged as drawn, and over the range of friction and the corners of the tolerances: a hub that is tighter, or whose friction is larger, slips later and takes more.",
     ),
     code(
         "LAVT003",
@@ -26,7 +26,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "LAVT004",
         "Efficiency",
-        "Power at the output over power at the input in mode II, 1 − R τ_b/τ_in, less losses. The slip of the spring on the hub costs the torque τ_b at any load.",
+        "Power at the output over power at the input in mode II, 1 − R τ_b/τ_in, less losses. The slip of the spring on the hub costs the torque τ_b at any load. Judged as drawn, and over the range of friction and the corners of the tolerances.",
     ),
     code("LAVT005", "Limit on a metric", "A limit of `[requirements.limits]`, on any metric by its name."),
     code(
@@ -139,11 +139,25 @@ pub(crate) const CODES: &[Explanation] = &[
         "Teeth go in",
         "Backlash of both meshes at the distance at which sun and planets, with full teeth, have no play. Profile shifts must bring both meshes to one distance: for ring = sun + 2 planet, x_ring = x_sun + 2 x_planet is near it.",
     ),
-    code("LAVT020", "Wall between bore and teeth", "Material between the hole of a gear and the roots of its teeth; a module is kept."),
+    code(
+        "LAVT020",
+        "Walls beside holes",
+        "Material between the hole of a gear and the roots of its teeth, and between the holes for the pins and the middle one of the carrier; a module is kept.",
+    ),
+    code(
+        "LAVT021",
+        "Speed of the motor",
+        "Largest speed of the motor in the simulated closing against `motor.max_speed`, which its maker gives for brushes and bearings. Before the object is touched a motor turns almost as its voltage over its torque constant has it; only a lower voltage, or another motor, turns more slowly.",
+    ),
+    code(
+        "LAVT022",
+        "Force of the grasp",
+        "Force on the object in the end of the simulated closing against `hand.force`. A motor that stalls, or a clutch that slips, stays below it; the times and energies are then those of the weaker grasp, so that a search must keep to it.",
+    ),
     code(
         "E0820",
         "Part that cannot be made",
-        "A gear whose teeth cannot be drawn - pointed, without flank, below the base circle - or a bore that leaves no wall.",
+        "A gear whose teeth cannot be drawn - pointed, without flank, below the base circle - a bore that leaves no wall, or a friction ring without room for its bolts.",
     ),
     code(
         "E0830",

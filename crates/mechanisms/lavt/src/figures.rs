@@ -103,7 +103,7 @@ fn other_model(design: &Design, behaviour: &Behaviour) -> Option<(Statics, &'sta
         Source::Paper => (Source::Corrected, "corrected model"),
     };
     let clutch = clutch(&design.built, source).ok()?;
-    Some((Statics::new(&design.built, &clutch, design.built.friction, behaviour.train.mesh_loss()), label))
+    Some((Statics::new(&design.built, &clutch, design.built.friction, behaviour.train.mesh_loss()).ok()?, label))
 }
 
 /// Every curve of a result.
@@ -156,9 +156,10 @@ fn characteristic_figure(design: &Design, behaviour: &Behaviour, measured: &Meas
     if let Some((other, label)) = other_model(design, behaviour) {
         lines.push(series(characteristic(design, &other, "other"), label, Stroke::Reference));
     }
-    for (low, label) in behaviour.slippery.iter().zip(["least friction", "largest friction"]) {
-        if design.friction_scatters() {
-            lines.push(series(characteristic(design, low, "range"), label, Stroke::Third));
+    if design.friction_scatters() {
+        let ends = [("least friction", Stroke::Third), ("largest friction", Stroke::Fourth)];
+        for (statics, (label, stroke)) in behaviour.slippery.iter().zip(ends) {
+            lines.push(series(characteristic(design, statics, "range"), label, stroke));
         }
     }
     if let Some(back) = way_back(design, statics) {
@@ -172,7 +173,7 @@ fn characteristic_figure(design: &Design, behaviour: &Behaviour, measured: &Meas
     if statics.grip_nm.is_some() {
         let to_nm = statics.plateau_end_nm(output_nm);
         if to_nm > from_nm {
-            plot.spans.push(VerticalSpan { from: from_nm, to: to_nm, label: "blocked".to_owned() });
+            plot.spans.push(VerticalSpan { from: from_nm, to: to_nm, label: "blocked".to_owned(), hatched: true });
             let _ = write!(caption, " Blocked up to {}: the spring holds on hub and bore.", torque(to_nm));
         }
         if let Some(down_nm) = statics.downshift_nm() {
@@ -218,14 +219,19 @@ fn efficiency_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     figure("efficiency", "Efficiency over torque at the output", caption.to_owned(), FigureContent::Plot(plot))
 }
 
+/// Coefficients of friction, the same on hub and bore, from 0 on, and the torques with them.
+fn over_friction(design: &Design, behaviour: &Behaviour) -> Vec<(f64, Statics)> {
+    let mus = (0..FRICTIONS).map(|i| MOST_FRICTION * i as f64 / (FRICTIONS - 1) as f64);
+    let loss = behaviour.train.mesh_loss();
+    mus.filter_map(|mu| Some((mu, Statics::new(&design.built, &behaviour.clutch, [mu; 2], loss).ok()?))).collect()
+}
+
 /// Mode diagram: which mode, over friction and torque at the input, the output loaded as at the shift.
 fn modes_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     let top_nm = top_nm(design, &behaviour.statics);
-    let mus: Vec<f64> = (1..FRICTIONS).map(|i| MOST_FRICTION * i as f64 / (FRICTIONS - 1) as f64).collect();
-    let all: Vec<Statics> =
-        mus.iter().map(|mu| Statics::new(&design.built, &behaviour.clutch, [*mu; 2], behaviour.train.mesh_loss())).collect();
+    let all = over_friction(design, behaviour);
     let line = |label: &str, stroke: Stroke, y: &dyn Fn(&Statics) -> Option<f64>| {
-        let (x, y) = mus.iter().zip(&all).filter_map(|(mu, s)| Some((*mu, y(s)?))).filter(|(_, nm)| *nm <= top_nm).unzip();
+        let (x, y) = all.iter().skip(1).filter_map(|(mu, s)| Some((*mu, y(s)?))).filter(|(_, nm)| *nm <= top_nm).unzip();
         Series { label: label.to_owned(), x, y, stroke }
     };
     let lines = vec![
@@ -242,7 +248,7 @@ fn modes_figure(design: &Design, behaviour: &Behaviour) -> Figure {
     }
     let [[low, _], [high, _]] = design.frictions();
     if low < high {
-        plot.spans.push(VerticalSpan { from: low, to: high, label: "range of friction".to_owned() });
+        plot.spans.push(VerticalSpan { from: low, to: high, label: "range of friction".to_owned(), hatched: false });
     }
     let caption = "Below the lowest line mode I. Between blocked and mode II the output is loaded as at the shift; with more load mode II begins later.";
     figure("modes", "Modes over friction and torque", caption.to_owned(), FigureContent::Plot(plot))
@@ -252,13 +258,11 @@ fn modes_figure(design: &Design, behaviour: &Behaviour) -> Figure {
 fn margins_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
     let required = design.requirements.as_ref()?;
     let k = behaviour.statics.leverage();
-    let at = |mu: f64| Statics::new(&design.built, &behaviour.clutch, [mu; 2], 0.0);
-    let mus: Vec<f64> = (0..FRICTIONS).map(|i| MOST_FRICTION * i as f64 / (FRICTIONS - 1) as f64).collect();
-    let all: Vec<Statics> = mus.iter().map(|mu| at(*mu)).collect();
+    let all = over_friction(design, behaviour);
     let line = |label: &str, stroke: Stroke, y: &dyn Fn(&Statics) -> Option<f64>| {
         // What is far beyond the torque needed would press everything else to the axis.
         let most_nm = 4.0 * k * required.input_nm;
-        let (x, y) = mus.iter().zip(&all).filter_map(|(mu, s)| Some((*mu, y(s)?))).filter(|(_, nm)| *nm <= most_nm).unzip();
+        let (x, y) = all.iter().filter_map(|(mu, s)| Some((*mu, y(s)?))).filter(|(_, nm)| *nm <= most_nm).unzip();
         Series { label: label.to_owned(), x, y, stroke }
     };
     let x = axis("friction", "Friction μ of hub and bore", Dimension::Ratio, &number());
@@ -285,7 +289,7 @@ fn margins_figure(design: &Design, behaviour: &Behaviour) -> Option<Figure> {
     });
     let [[low, _], [high, _]] = design.frictions();
     if low < high {
-        plot.spans.push(VerticalSpan { from: low, to: high, label: "range of friction".to_owned() });
+        plot.spans.push(VerticalSpan { from: low, to: high, label: "range of friction".to_owned(), hatched: false });
     }
     let mut caption =
         "What the spring holds, over a friction that is the same on hub and bore; lines end at four times the torque needed.".to_owned();

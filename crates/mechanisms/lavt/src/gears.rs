@@ -10,6 +10,7 @@ use forcewright_elements::hertz::Solid;
 
 use crate::design::{Design, Gears};
 use crate::metrics::Measured;
+use crate::sizes::{Sizes, envelope_m3};
 
 /// The gears of a design.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,29 +175,10 @@ pub(crate) fn measure(m: &mut Measured, design: &Design, train: &Train) {
         m.set("flank_pressure", flank_pa);
     }
     m.set("mesh_efficiency", train.friction.map(|_| 1.0 - train.loss));
-    let Design { built, making, .. } = design;
-    let spring = &built.spring;
-    let outer_m = outer_m(set.planet_ring.wheel.root_radius_m, built.bore_m, making.ring_wall_m);
-    let turns = spring.hub_turns + spring.free_turns + spring.unsupported_turns;
-    let length_m = length_m(built.gears.face_m, turns, spring.wire_m);
-    m.set("outer_diameter", outer_m);
-    m.set("length", length_m);
-    m.set("envelope_volume", envelope_m3([outer_m, length_m]));
-}
-
-/// Outer diameter of gears and clutch, m: a wall outside the roots of the ring and around the bore.
-pub(crate) fn outer_m(ring_root_m: f64, bore_m: f64, wall_m: f64) -> f64 {
-    (2.0 * (ring_root_m + wall_m)).max(bore_m + 2.0 * wall_m)
-}
-
-/// Length of gears and clutch, m. A coil more for the ends; turns lie beside each other, with a tenth of the wire between them.
-pub(crate) fn length_m(face_m: f64, turns: f64, wire_m: f64) -> f64 {
-    face_m + (turns + 1.0) * 1.1 * wire_m
-}
-
-/// Volume of the cylinder of a diameter and a length.
-pub(crate) fn envelope_m3([outer_m, length_m]: [f64; 2]) -> f64 {
-    0.25 * std::f64::consts::PI * outer_m * outer_m * length_m
+    let Sizes { envelope_m, .. } = Sizes::of(design, train);
+    m.set("outer_diameter", envelope_m[0]);
+    m.set("length", envelope_m[1]);
+    m.set("envelope_volume", envelope_m3(envelope_m));
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ mod metrics;
 mod parts;
 mod reproduce;
 mod scene;
+mod sizes;
 mod spec;
 mod statements;
 mod statics;
@@ -38,7 +39,7 @@ use closing::figures::Closings;
 use metrics::LavtMetrics;
 use study::Transmissions;
 
-pub use analysis::{Behaviour, NoTransmission, measure};
+pub use analysis::{Behaviour, NoTransmission, Over, measure};
 pub use bench::{Bench, Friction, Known, Lines, Mode, Part, Run, Shift, Wave};
 pub use closing::{ClosingSettings, Ending, Energies, Grasp, Instant, OneSpeed, Phase, grasp, grasp_one_speed, grasp_with};
 pub use design::{
@@ -107,11 +108,12 @@ impl Mechanism for Lavt {
     }
 
     fn evaluator(_: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
-        Some(Box::new(Many::<Transmissions>::new(design, free, diagnostics)?))
+        Some(Box::new(Many::<Transmissions>::new(&study::drawn(design, free), free, diagnostics)?))
     }
 
-    fn task(spec: &Spec, design: &Design, free: &[Free], _: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
-        measuring::task::<Transmissions>(design, &spec.studies.optimise.objective, free, diagnostics)
+    fn task(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
+        let drawn = (purpose == Purpose::Scatter).then(|| study::drawn(design, free));
+        measuring::task::<Transmissions>(drawn.as_ref().unwrap_or(design), &spec.studies.optimise.objective, free, diagnostics)
     }
 
     fn skeleton() -> Option<Skeleton> {

@@ -27,6 +27,13 @@ pub const METRICS: &[MetricInfo] = &[
     ),
     metric("transition_torque_output", D::Torque, true, "Torque at the output at which mode I ends."),
     metric(
+        "transition_torque_output_low",
+        D::Torque,
+        false,
+        "Least torque at the output at which mode I ends, over the range of friction and the tolerances.",
+    ),
+    metric("transition_torque_output_high", D::Torque, false, "The largest of them."),
+    metric(
         "plateau_end_input",
         D::Torque,
         true,
@@ -46,7 +53,19 @@ pub const METRICS: &[MetricInfo] = &[
     ),
     metric("shift_hysteresis_output", D::Torque, false, "Output torque of the shift up less that of the shift down."),
     metric("output_torque_max", D::Torque, true, "Torque at the output with the required torque at the input."),
+    metric(
+        "output_torque_max_low",
+        D::Torque,
+        false,
+        "Least torque at the output with the required torque at the input, over the range of friction and the tolerances.",
+    ),
     metric("efficiency_max", D::Ratio, true, "Power at the output over power at the input with the required torque at the input."),
+    metric(
+        "efficiency_max_low",
+        D::Ratio,
+        false,
+        "Least efficiency with the required torque at the input, over the range of friction and the tolerances; 0 where it slips or is blocked.",
+    ),
     metric("efficiency_mode_1", D::Ratio, false, "Power at the output over power at the input in mode I, just before the transition."),
     metric("force_gain", D::Ratio, false, "Torque at the output over that of the same input without the transmission."),
     // Clutch.
@@ -132,14 +151,14 @@ pub const METRICS: &[MetricInfo] = &[
     metric("tooth_bending_stress", D::Stress, false, "Largest bending stress at a tooth root with the required torque at the input."),
     metric("flank_pressure", D::Stress, false, "Largest Hertz pressure between flanks with the required torque at the input."),
     // Size.
+    metric("outer_diameter", D::Length, true, "Outer diameter of the whole: that of ring, friction ring and chassis which is largest."),
     metric(
-        "outer_diameter",
+        "length",
         D::Length,
         true,
-        "Diameter of the cylinder that holds gears and spring, with a wall around them, without the chassis.",
+        "Length along the axis, from the carrier's plate at the input to the chassis' plate at the output, without axial play and shafts.",
     ),
-    metric("length", D::Length, true, "Length of gears and spring along the axis, without the plates of carrier and chassis."),
-    metric("envelope_volume", D::Volume, true, "Volume of that cylinder."),
+    metric("envelope_volume", D::Volume, true, "Volume of the cylinder of this diameter and length."),
     // Measured on a bench; `_low` and `_high` are the ends of intervals of 95 %.
     metric("bench_loss_mode_1", D::Ratio, false, "Bench: part of the torque that mode I loses, λ of τ_out = (1 − λ) τ_in − c."),
     metric("bench_loss_mode_1_low", D::Ratio, false, "Lower end of its interval."),
@@ -196,5 +215,6 @@ pub const METRICS: &[MetricInfo] = &[
     metric("energy_per_grasp", D::Energy, true, "Electric energy from rest to the wanted force, or to 95 % of that of a stall."),
     metric("grasps_per_charge", D::Ratio, true, "Energy of the battery over that of a grasp."),
     metric("peak_current", D::Current, true, "Largest current of the motor on the way."),
+    metric("motor_speed_max", D::AngularSpeed, false, "Largest speed of the motor as the hand closes."),
     metric("holding_power", D::Power, false, "Electric power that keeps the grasp; none where the finger's reduction holds it alone."),
 ];

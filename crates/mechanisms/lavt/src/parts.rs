@@ -1,4 +1,5 @@
-//! What is made of a design: gears, hub, spring, friction ring, plates of carrier and chassis, and the tables of spring, fits and assembly.
+//! What is made of a design: gears with their pins, hub, spring, friction ring, plates of carrier and chassis, and the tables of spring, fits
+//! and assembly.
 //!
 //! The gears are the drawn ones of [`forcewright_elements::gears`]; what carries them is simple: plates and sleeves with the diameters that
 //! matter. Keys, bearings and housing are the business of the machine around.
@@ -7,31 +8,29 @@ mod sheets;
 
 use std::f64::consts::TAU;
 
+use forcewright_base::fits::Fit;
 use forcewright_base::maths;
 use forcewright_base::units::{Dimension, format_si};
 use forcewright_contract::gears::GearPart;
 use forcewright_contract::judge::Comparison;
 use forcewright_curves::Profile;
-use forcewright_elements::gears::{GearError, ToothProfile, Wheel};
+use forcewright_elements::gears::{GearError, ToothProfile};
 use forcewright_model::{Body, Check, Coil, CoilEnd, Hole, NoPart, Part, PartSet, Plate, Section, Sense, Turned, Winding};
 
 use crate::analysis::Behaviour;
 use crate::design::Design;
-use crate::gears::wheels;
+use crate::sizes::{AIR, BEND, Sizes, long};
 
 /// Distance of the drawn teeth from the exact ones, modules.
 const CHORD: f64 = 5e-4;
-/// Turns beside each other, over the wire: a little air.
-pub(crate) const AIR: f64 = 1.1;
-/// Bend of the end that goes into the ring, in the middle of the wire, and the leg beyond it, wires.
-const BEND: f64 = 1.5;
-const LEG: f64 = 3.0;
 /// Least wall between a bore and the roots of teeth, modules.
 const LEAST_WALL: f64 = 1.0;
-/// Bores of sun and planets where the project gives none, over their root diameters.
-const BORE: f64 = 1.0 / 3.0;
 /// Holes that bolt the friction ring and the plates together.
 const BOLTS: u32 = 4;
+/// Pins of the planets: ground, pressed into the carrier; the planets turn on them.
+const PIN: &str = "h6";
+const PIN_IN_CARRIER: &str = "P7";
+const PIN_IN_PLANET: &str = "F8";
 
 /// Why no finite elements of them are of use.
 const RIGID: &str = "the parts of a transmission are taken as rigid";
@@ -41,39 +40,6 @@ fn no_gear(name: &str, error: &GearError) -> NoPart {
         code: "E0820",
         message: format!("the {name} cannot be drawn: {error}"),
         help: "change its profile shift, tip shortening or bore; `forcewright synthesise` finds shifts that run".to_owned(),
-    }
-}
-
-/// Sizes that parts and tables share, m.
-struct Sizes {
-    wheels: [Wheel; 3],
-    arm_m: f64,
-    outer_m: f64,
-    pins_m: f64,
-    sun_bore_m: f64,
-    hub_length_m: f64,
-    bore_length_m: f64,
-    chassis_m: f64,
-}
-
-impl Sizes {
-    fn of(design: &Design, behaviour: &Behaviour) -> Result<Self, NoPart> {
-        let refused = |message: String| NoPart { code: "E0820", message, help: "see `forcewright check`".to_owned() };
-        let wheels = wheels(&design.built.gears).map_err(refused)?;
-        let [sun, planet, ring] = &wheels;
-        let (making, spring) = (&design.making, &design.built.spring);
-        let pitch_m = AIR * spring.wire_m;
-        let outer_m = 2.0 * (ring.root_radius_m + making.ring_wall_m);
-        Ok(Self {
-            arm_m: behaviour.train.set.sun_planet.centre_distance_m,
-            outer_m,
-            pins_m: making.planet_bore_m.unwrap_or(2.0 * BORE * planet.root_radius_m),
-            sun_bore_m: making.sun_bore_m.unwrap_or(2.0 * BORE * sun.root_radius_m),
-            hub_length_m: (spring.hub_turns + 1.0) * pitch_m,
-            bore_length_m: (spring.bore_turns + 0.5) * pitch_m,
-            chassis_m: making.chassis_m.unwrap_or(outer_m.max(design.built.bore_m) + 2.0 * making.ring_wall_m),
-            wheels,
-        })
     }
 }
 
@@ -87,25 +53,14 @@ pub(crate) fn parts(design: &Design) -> Result<PartSet, NoPart> {
         message: error.to_string(),
         help: "see `forcewright check`".to_owned(),
     })?;
-    let sizes = Sizes::of(design, &behaviour)?;
+    let sizes = Sizes::of(design, &behaviour.train);
     let mut parts = gears(design, &sizes)?;
-    parts.push(sleeve(
-        design,
-        "hub",
-        "Hub with surface A",
-        [sizes.hub_length_m, design.built.hub_m, design.making.hub_bore_m],
-        &hub_notes(design),
-    )?);
+    parts.push(pin(design, &sizes)?);
+    parts.push(sleeve(design, "hub", "Hub with surface A", [long(sizes.hub), design.built.hub_m, sizes.shaft_m], hub_notes(design))?);
     parts.push(spring(design)?);
-    parts.push(seat(design, &sizes, leg_m(&coil(design))));
-    parts.push(sleeve(
-        design,
-        "friction-ring",
-        "Friction ring with surface B",
-        [sizes.bore_length_m, sizes.chassis_m, design.built.bore_m],
-        &bore_notes(design),
-    )?);
-    parts.push(carrier(design, &sizes));
+    parts.push(seat(design, &sizes, leg_m(design)));
+    parts.push(friction_ring(design, &sizes)?);
+    parts.extend(carrier(design, &sizes));
     parts.push(chassis(design, &sizes));
     let sheets = sheets::sheets(design, &behaviour, &sizes);
     let checks = walls(design, &sizes);
@@ -126,7 +81,7 @@ fn gears(design: &Design, sizes: &Sizes) -> Result<Vec<Part>, NoPart> {
         let holes = match i {
             0 => vec![hole([0.0; 2], sizes.sun_bore_m, "shaft of the input")],
             1 => vec![hole([0.0; 2], sizes.pins_m, "pin of the carrier")],
-            _ => rim_holes(design, sizes),
+            _ => rim_holes(sizes),
         };
         let gear = GearPart {
             name,
@@ -134,14 +89,15 @@ fn gears(design: &Design, sizes: &Sizes) -> Result<Vec<Part>, NoPart> {
             tooth: &tooth,
             thickness_m: gears.face_m,
             chord_error_m: CHORD * gears.module_m,
-            outer_radius_m: (i == 2).then_some(0.5 * sizes.outer_m),
+            outer_radius_m: (i == 2).then_some(0.5 * sizes.ring_m),
             holes,
             material: density.map(|density| ("gears", Some(density))),
             display: &design.units.length,
         };
         let mut part = gear.part().map_err(|error| no_gear(name, &error))?;
         if i == 1 {
-            part.notes.push(format!("Make {} of them.", gears.planets));
+            part.count = gears.planets as usize;
+            part.notes.push(format!("Hole for the pin: {}.", fitted(design, PIN_IN_PLANET, sizes.pins_m)));
         }
         if gears.backlash_m > 0.0 {
             part.notes.push(format!(
@@ -154,23 +110,54 @@ fn gears(design: &Design, sizes: &Sizes) -> Result<Vec<Part>, NoPart> {
     Ok(all)
 }
 
+/// A fit and its limits of size.
+fn fitted(design: &Design, fit: &str, diameter_m: f64) -> String {
+    let limits_m = Fit::parse(fit).ok().and_then(|fit| fit.deviations_m(diameter_m).ok());
+    // ISO 286 has not every position at every diameter.
+    limits_m.map_or_else(|| "its play as agreed".to_owned(), |limits_m| format!("{fit}, {}", limits_of_size(design, diameter_m, limits_m)))
+}
+
+/// What the planets turn on.
+fn pin(design: &Design, sizes: &Sizes) -> Result<Part, NoPart> {
+    let length_m = sizes.second_plate[1] - sizes.first_plate[0];
+    let notes = vec![
+        format!("Ground: diameter {}.", fitted(design, PIN, sizes.pins_m)),
+        "Pressed into both plates of the carrier, flush; the planets turn on them.".to_owned(),
+    ];
+    let one = sleeve(design, "pin", "Pin of a planet", [length_m, sizes.pins_m, 0.0], notes)?;
+    Ok(Part { count: design.built.gears.planets as usize, ..one })
+}
+
 /// Holes that bolt ring and seat together, in the rim outside of the teeth.
-fn rim_holes(design: &Design, sizes: &Sizes) -> Vec<Hole> {
-    let middle_m = 0.5 * (sizes.wheels[2].root_radius_m + 0.5 * sizes.outer_m);
-    around(BOLTS, middle_m, 0.4 * design.making.ring_wall_m, "screw or pin of ring and seat")
+fn rim_holes(sizes: &Sizes) -> Vec<Hole> {
+    around(BOLTS, sizes.screw_circle_m, sizes.screw_m, "screw or pin of ring and seat")
+}
+
+/// Holes that bolt friction ring and chassis together.
+fn bolt_holes(sizes: &Sizes, purpose: &str) -> Vec<Hole> {
+    around(BOLTS, sizes.bolt_circle_m, sizes.bolt_m, purpose)
+}
+
+/// Diameter of the hole through the seat: a wire is left beside the spring's leg.
+pub(crate) fn seat_hole_m(design: &Design) -> f64 {
+    let wire_m = design.built.spring.wire_m;
+    2.0 * (leg_m(design) - 1.5 * wire_m).max(wire_m)
 }
 
 /// The disc on the ring that takes the end of the spring; the carrier passes through its middle.
 fn seat(design: &Design, sizes: &Sizes, leg_m: f64) -> Part {
     let wire_m = design.built.spring.wire_m;
-    let mut holes = rim_holes(design, sizes);
+    let mut holes = rim_holes(sizes);
     holes.push(hole([leg_m, 0.0], 1.05 * wire_m, "end of the spring, along the axis"));
-    holes.push(hole([0.0; 2], 2.0 * (leg_m - 1.5 * wire_m).max(wire_m), "hub and carrier"));
+    holes.push(hole([0.0; 2], seat_hole_m(design), "hub and shaft of the output"));
     let notes = vec![
-        "It stands off the ring by the thickness of the carrier's plate, which turns between them: washers on the screws.".to_owned(),
-        "The hole for the spring is tight: its end must not tilt.".to_owned(),
+        format!(
+            "It stands off the ring by {} and what play the carrier's plate needs, which turns between them: spacers on the screws.",
+            format_si(sizes.ring_spacers_m(), &design.units.length, 4)
+        ),
+        "The hole for the spring is tight: its end must not tilt. It ends flush with the side of the carrier.".to_owned(),
     ];
-    plate(design, "ring-seat", "Seat of the spring on the ring", sizes.outer_m, holes, notes)
+    plate(design, "ring-seat", "Seat of the spring on the ring", [sizes.ring_m, sizes.plate_m()], holes, notes)
 }
 
 /// Limits of size of a diameter.
@@ -191,24 +178,48 @@ fn hub_notes(design: &Design) -> Vec<String> {
     ]
 }
 
+/// The ring that the spring is caught in: a plate as thick as its turns are long, so that it has holes for bolts.
+fn friction_ring(design: &Design, sizes: &Sizes) -> Result<Part, NoPart> {
+    let bore_m = design.built.bore_m;
+    let inside =
+        sizes.bolt_circle_m - 0.5 * sizes.bolt_m > 0.5 * bore_m && sizes.bolt_circle_m + 0.5 * sizes.bolt_m < 0.5 * sizes.chassis_m;
+    if !inside {
+        let length = |m: f64| format_si(m, &design.units.length, 4);
+        return Err(NoPart {
+            code: "E0820",
+            message: format!(
+                "the friction ring cannot be made: from a bore of {} to a diameter of {} it has no room for bolts of {}",
+                length(bore_m),
+                length(sizes.chassis_m),
+                length(sizes.bolt_m)
+            ),
+            help: "`parts.chassis_diameter` larger, or `parts.ring_wall` smaller".to_owned(),
+        });
+    }
+    let mut holes = bolt_holes(sizes, "bolt to the chassis");
+    holes.push(hole([0.0; 2], bore_m, "surface B"));
+    let title = "Friction ring with surface B";
+    Ok(plate(design, "friction-ring", title, [sizes.chassis_m, long(sizes.friction_ring)], holes, bore_notes(design)))
+}
+
 fn bore_notes(design: &Design) -> Vec<String> {
     vec![
         format!(
             "Surface B: diameter {}; the torque of the shift depends on it.",
             limits_of_size(design, design.built.bore_m, design.scatter.bore_m)
         ),
-        "It is fastened to the chassis, coaxial with the hub: an eccentric bore is touched early on one side.".to_owned(),
-        "It must reach up to the ring: no turn of the spring may hang between them.".to_owned(),
+        "It is bolted to the chassis, coaxial with the hub: an eccentric bore is touched early on one side.".to_owned(),
+        "It must reach up to the ring's seat: no turn of the spring may hang between them.".to_owned(),
     ]
 }
 
-fn sleeve(design: &Design, name: &str, title: &str, [length_m, outer_m, bore_m]: [f64; 3], notes: &[String]) -> Result<Part, NoPart> {
+fn sleeve(design: &Design, name: &str, title: &str, [length_m, outer_m, bore_m]: [f64; 3], notes: Vec<String>) -> Result<Part, NoPart> {
     let body =
         Turned { bore_diameter_m: bore_m, sections: vec![Section::Plain { length_m, radius_m: 0.5 * outer_m }], drillings: Vec::new() };
     body.check().map_err(|error| NoPart {
         code: "E0820",
         message: format!("the {name} cannot be made: {error}"),
-        help: "`parts.hub_bore` smaller, or `parts.chassis_diameter` larger".to_owned(),
+        help: "`parts.hub_bore` smaller, or a larger hub".to_owned(),
     })?;
     Ok(Part {
         name: name.to_owned(),
@@ -216,7 +227,7 @@ fn sleeve(design: &Design, name: &str, title: &str, [length_m, outer_m, bore_m]:
         count: 1,
         material: None,
         density_kg_per_m3: design.making.density_kg_per_m3,
-        notes: notes.to_vec(),
+        notes,
         body: Body::Turned(body),
     })
 }
@@ -231,7 +242,8 @@ fn coil(design: &Design) -> Coil {
         windings: vec![Winding::even(turns, AIR * spring.wire_m)],
         is_right_handed: spring.right_hand,
         start_rad: 0.0,
-        ends: [CoilEnd::Cut, CoilEnd::Axial { bend_m: BEND * spring.wire_m, length_m: LEG * spring.wire_m }],
+        // As long as the seat is thick: beyond it the carrier turns.
+        ends: [CoilEnd::Cut, CoilEnd::Axial { bend_m: BEND * spring.wire_m, length_m: design.making.plate_m(design.built.gears.module_m) }],
     }
 }
 
@@ -248,32 +260,32 @@ fn spring(design: &Design) -> Result<Part, NoPart> {
         count: 1,
         material: design.wire.grade.map(|grade| format!("spring steel wire EN 10270-1 {}", grade.name)),
         density_kg_per_m3: design.wire.density_kg_per_m3,
-        notes: spring_notes(design, &body),
+        notes: spring_notes(design),
         body: Body::Coil(body),
     })
 }
 
-/// Distance of the leg from the axis, m.
-fn leg_m(coil: &Coil) -> f64 {
-    coil.line().pieces().last().map_or(0.0, |leg| {
+/// Distance of the spring's leg from the axis, m.
+pub(crate) fn leg_m(design: &Design) -> f64 {
+    coil(design).line().pieces().last().map_or(0.0, |leg| {
         let [x, y, _] = leg.at(1.0).point_m;
         maths::hypot(x, y)
     })
 }
 
-fn spring_notes(design: &Design, coil: &Coil) -> Vec<String> {
+fn spring_notes(design: &Design) -> Vec<String> {
     let length = |m: f64| format_si(m, &design.units.length, 6);
     let spring = &design.built.spring;
     vec![
         format!("Inner diameter, free: {}; the shift depends on it.", limits_of_size(design, spring.inner_m, design.scatter.inner_m)),
         format!("Wire: diameter {}.", limits_of_size(design, spring.wire_m, design.scatter.wire_m)),
-        "The lower end, cut square, lies free on the hub; the upper one goes into the ring.".to_owned(),
-        format!("The leg lies {} from the axis.", length(leg_m(coil))),
+        "The lower end, cut square, lies free on the hub; the upper one goes through the seat of the ring.".to_owned(),
+        format!("The leg lies {} from the axis.", length(leg_m(design))),
         "Drawn free and even, a tenth of the wire between turns; `spring.csv` says how it is ordered.".to_owned(),
     ]
 }
 
-fn plate(design: &Design, name: &str, title: &str, diameter_m: f64, holes: Vec<Hole>, notes: Vec<String>) -> Part {
+fn plate(design: &Design, name: &str, title: &str, [diameter_m, depth_m]: [f64; 2], holes: Vec<Hole>, notes: Vec<String>) -> Part {
     Part {
         name: name.to_owned(),
         title: title.to_owned(),
@@ -282,7 +294,7 @@ fn plate(design: &Design, name: &str, title: &str, diameter_m: f64, holes: Vec<H
         density_kg_per_m3: design.making.density_kg_per_m3,
         notes,
         body: Body::Plate(Plate {
-            depth_m: design.making.plate_m,
+            depth_m,
             outline: Profile::circle([0.0; 2], 0.5 * diameter_m),
             cutouts: Vec::new(),
             holes,
@@ -301,49 +313,92 @@ fn around(count: u32, radius_m: f64, diameter_m: f64, purpose: &str) -> Vec<Hole
     (0..count).map(one).collect()
 }
 
-fn carrier(design: &Design, sizes: &Sizes) -> Part {
-    let mut holes = around(design.built.gears.planets, sizes.arm_m, sizes.pins_m, "pin of a planet");
-    // The tip of the sun passes through the plate on the side of the input.
-    holes.push(hole([0.0; 2], 2.0 * sizes.wheels[0].tip_radius_m + 2.0 * design.built.gears.module_m, "sun with its shaft"));
-    let diameter_m = 2.0 * sizes.arm_m + 3.0 * sizes.pins_m;
-    let notes = vec![
-        format!("Pins of the planets on a radius of {}.", format_si(sizes.arm_m, &design.units.length, 6)),
-        "Make two: one on each side of the planets; the one away from the input carries the hub and has no hole in its middle but the output's."
-            .to_owned(),
-    ];
-    plate(design, "carrier", "Plate of the carrier", diameter_m, holes, notes)
+/// Both plates: the sun passes through the one, the other carries hub and shaft of the output.
+fn carrier(design: &Design, sizes: &Sizes) -> [Part; 2] {
+    let size_m = [sizes.carrier_m, sizes.plate_m()];
+    let pins = |middle: Hole| {
+        let mut holes = around(design.built.gears.planets, sizes.arm_m, sizes.pins_m, "pin of a planet");
+        holes.push(middle);
+        holes
+    };
+    let notes = |own: &str| {
+        vec![
+            format!("Pins of the planets on a radius of {}.", format_si(sizes.arm_m, &design.units.length, 6)),
+            format!("Holes for the pins: {}.", fitted(design, PIN_IN_CARRIER, sizes.pins_m)),
+            own.to_owned(),
+        ]
+    };
+    let [sun, shaft] = [hole([0.0; 2], sizes.sun_hole_m, "sun with its shaft"), hole([0.0; 2], sizes.shaft_m, "shaft of the output")];
+    [
+        plate(design, "carrier-input", "Plate of the carrier at the input", size_m, pins(sun), notes("The sun turns in its middle.")),
+        plate(
+            design,
+            "carrier-output",
+            "Plate of the carrier at the output",
+            size_m,
+            pins(shaft),
+            notes("Fastened to the shaft of the output, on which the hub sits."),
+        ),
+    ]
 }
 
 fn chassis(design: &Design, sizes: &Sizes) -> Part {
-    let bolt_m = 0.5 * design.making.ring_wall_m;
-    let circle_m = 0.25 * (sizes.chassis_m + design.built.bore_m.max(sizes.outer_m));
-    let mut holes = around(BOLTS, circle_m, bolt_m, "bolt to the friction ring");
-    holes.push(hole([0.0; 2], design.making.hub_bore_m, "bearing of the output"));
-    plate(design, "chassis", "Plate of the chassis", sizes.chassis_m, holes, Vec::new())
+    let mut holes = bolt_holes(sizes, "bolt to the friction ring");
+    holes.push(hole([0.0; 2], sizes.shaft_m, "bearing of the output"));
+    let spacers = format!(
+        "It stands off the friction ring by {}, in which the hub turns: spacers on the bolts.",
+        format_si(sizes.chassis_spacers_m(), &design.units.length, 4)
+    );
+    plate(design, "chassis", "Plate of the chassis", [sizes.chassis_m, sizes.plate_m()], holes, vec![spacers])
 }
 
-/// LAVT020: walls between bores and roots.
+/// LAVT020: walls between bores and roots, and between the holes of the carrier.
 fn walls(design: &Design, sizes: &Sizes) -> Vec<Check> {
     let least_m = LEAST_WALL * design.built.gears.module_m;
-    let one = |(name, wheel, bore_m): (&str, &Wheel, f64)| {
+    let one = |name: &str, wall_m: f64, basis: &str, fix: &str| {
         Comparison {
             code: "LAVT020",
             name: format!("{name}_wall"),
             title: format!("Wall of the {name}"),
             required: false,
-            value: Some(wheel.root_radius_m - 0.5 * bore_m),
+            value: Some(wall_m),
             limit: Some(least_m),
             sense: Sense::AtLeast,
             dimension: Dimension::Length,
             display: design.units.length.clone(),
             scale: None,
-            basis: "wall between the bore and the roots of the teeth; a module is kept".to_owned(),
-            fix: format!("`parts.{name}_bore` smaller, or a larger module"),
+            basis: format!("{basis}; a module is kept"),
+            fix: fix.to_owned(),
             missing: String::new(),
             partial: false,
             broken: false,
         }
         .judge()
     };
-    [("sun", &sizes.wheels[0], sizes.sun_bore_m), ("planet", &sizes.wheels[1], sizes.pins_m)].into_iter().map(one).collect()
+    let teeth = "wall between the bore and the roots of the teeth";
+    let [sun, planet, _] = &sizes.wheels;
+    let middle_m = sizes.sun_hole_m.max(sizes.shaft_m);
+    let holes = "wall between the holes for the pins and the one in the middle, of the plate where it is less";
+    vec![
+        one("sun", sun.root_radius_m - 0.5 * sizes.sun_bore_m, teeth, "`parts.sun_bore` smaller, or a larger module"),
+        one("planet", planet.root_radius_m - 0.5 * sizes.pins_m, teeth, "`parts.planet_bore` smaller, or a larger module"),
+        one("carrier", sizes.arm_m - 0.5 * (sizes.pins_m + middle_m), holes, "`parts.planet_bore` or `parts.hub_bore` smaller"),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By the limits of ISO 286: no pin is loose in the carrier, none is tight in a planet, and neither by much.
+    #[test]
+    fn pins_are_pressed_into_the_carrier_and_turn_in_the_planets() {
+        for tenths in 5..=500 {
+            let diameter_m = 1e-4 * f64::from(tenths);
+            let [pin, plate, planet] = [PIN, PIN_IN_CARRIER, PIN_IN_PLANET]
+                .map(|fit| Fit::parse(fit).expect("a fit").deviations_m(diameter_m).unwrap_or_else(|e| panic!("{diameter_m}: {e}")));
+            assert!(plate[1] <= pin[0] + 1e-12 && pin[1] - plate[0] < 45e-6, "{diameter_m}: {pin:?} {plate:?}");
+            assert!(planet[0] > pin[1] && planet[1] - pin[0] < 85e-6, "{diameter_m}: {pin:?} {planet:?}");
+        }
+    }
 }

@@ -98,7 +98,7 @@ fn torque(design: &Design, name: &str) -> Option<f64> {
     };
     // The paper's optimum holds the input torque only above a friction, which its table does not ask for.
     if ["max", "eta"].contains(&name) {
-        let statics = gripping(design, &behaviour);
+        let statics = gripping(&behaviour);
         let output_nm = statics.output(INPUT_NM).1;
         return Some(if name == "max" { 1e3 * output_nm } else { 100.0 * statics.efficiency(INPUT_NM)? });
     }
@@ -106,8 +106,9 @@ fn torque(design: &Design, name: &str) -> Option<f64> {
 }
 
 /// Statics with a bore that holds whatever comes.
-fn gripping(design: &Design, behaviour: &Behaviour) -> Statics {
-    let plain = Statics::new(&design.built, &behaviour.clutch, design.built.friction, 0.0);
+fn gripping(behaviour: &Behaviour) -> Statics {
+    // The gears of these designs lose nothing.
+    let plain = behaviour.statics;
     Statics { grip_nm: plain.grip_nm.map(|_| f64::INFINITY), ..plain }
 }
 
@@ -198,7 +199,7 @@ fn section_2(design: &Design, name: &str) -> Option<f64> {
     let hand = design.hand.as_ref()?;
     let metric = |name: &str| measure(&paper, &behaviour).get(name);
     let typed = |text: &str, dimension| Quantity::parse(text, dimension).ok().map(|q| q.si);
-    let output = |input_nm: f64| gripping(&paper, &behaviour).output(input_nm).1;
+    let output = |input_nm: f64| gripping(&behaviour).output(input_nm).1;
     let gain = output(INPUT_NM) / INPUT_NM;
     Some(match name {
         "work" => metric("squeeze_work")?,

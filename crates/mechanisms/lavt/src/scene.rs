@@ -9,7 +9,8 @@ use forcewright_model::{Axis, Film, Frame, Item, Look, Role, Scene};
 
 use crate::analysis::Behaviour;
 use crate::design::Design;
-use crate::gears::wheels;
+use crate::parts::{leg_m, seat_hole_m};
+use crate::sizes::{Sizes, long};
 
 /// Frames of a film in each of its two stretches.
 const FRAMES: [usize; 2] = [9, 17];
@@ -54,7 +55,9 @@ fn teeth(wheel: &Wheel) -> Option<Vec<Point>> {
 struct Train {
     sun: Vec<Point>,
     planet: Vec<Point>,
+    /// Its teeth, and the radius of its outside.
     ring: Vec<Point>,
+    ring_m: f64,
     teeth: [f64; 3],
     planets: usize,
     arm_m: f64,
@@ -63,25 +66,16 @@ struct Train {
 
 impl Train {
     fn new(design: &Design, behaviour: &Behaviour) -> Option<Self> {
-        let [sun, planet, ring] = wheels(&design.built.gears).ok()?;
-        let outer_m = ring.root_radius_m + design.making.ring_wall_m;
-        // One line around both boundaries, with a cut between them.
-        let inner = teeth(&ring)?;
-        let mut whole = circle(outer_m);
-        let near = inner
-            .iter()
-            .enumerate()
-            .min_by(|a, b| maths::hypot(a.1[0] - outer_m, a.1[1]).total_cmp(&maths::hypot(b.1[0] - outer_m, b.1[1])));
-        let start = near.map_or(0, |(i, _)| i);
-        whole.extend(inner[start..].iter().chain(&inner[..=start]));
+        let Sizes { wheels: [sun, planet, ring], ring_m, arm_m, pins_m, .. } = Sizes::of(design, &behaviour.train);
         Some(Self {
             sun: teeth(&sun)?,
             planet: teeth(&planet)?,
-            ring: whole,
+            ring: teeth(&ring)?,
+            ring_m: 0.5 * ring_m,
             teeth: design.built.gears.teeth.map(f64::from),
             planets: usize::try_from(design.built.gears.planets).ok()?,
-            arm_m: behaviour.train.set.sun_planet.centre_distance_m,
-            pin_m: 0.35 * planet.root_radius_m,
+            arm_m,
+            pin_m: 0.5 * pins_m,
         })
     }
 
@@ -94,7 +88,10 @@ impl Train {
         let planet_rest_rad = PI - PI / z_planet;
         let ring_rest_rad = -(TAU / z_ring) * ((-planet_rest_rad * z_planet / TAU) + 0.5);
         let ring_rad = ring_rest_rad + carrier_rad - rolled_rad * z_sun / z_ring;
-        let mut items = vec![Item::Body { corners: turned(&self.ring, ring_rad, [0.0; 2]), role: named(Look::Plate, "ring") }];
+        let mut items = vec![
+            Item::Disc { centre: [0.0; 2], radius_m: self.ring_m, role: named(Look::Plate, "ring") },
+            Item::Body { corners: turned(&self.ring, ring_rad, [0.0; 2]), role: named(Look::Opening, "") },
+        ];
         let mut pins = Vec::new();
         for i in 0..self.planets {
             let place_rad = TAU * i as f64 / self.planets as f64;
@@ -194,49 +191,19 @@ fn block(x: [f64; 2], r: [f64; 2], role: Role) -> Item {
     Item::Body { corners: vec![[x[0], r[0]], [x[1], r[0]], [x[1], r[1]], [x[0], r[1]]], role }
 }
 
-/// Upper half of a section along the axis, which is the x axis.
+/// Upper half of a section along the axis, which is the x axis: the parts at the places and with the sizes that [`Sizes`] gives them.
 pub(crate) fn section(design: &Design, behaviour: &Behaviour) -> Scene {
-    let (built, making) = (&design.built, &design.making);
-    let set = &behaviour.train.set;
-    let spring = &built.spring;
-    let (face_m, plate_m, wire_m) = (built.gears.face_m, making.plate_m, spring.wire_m);
-    let [sun, planet, ring] = [set.sun_planet.pinion, set.planet_ring.pinion, set.planet_ring.wheel];
-    let arm_m = set.sun_planet.centre_distance_m;
-    let outer_m = ring.root_radius_m + making.ring_wall_m;
-    let pitch_m = 1.1 * wire_m;
-    let coil_x = |turn: f64| face_m + plate_m + (turn + 0.5) * pitch_m;
-    let bore_end = coil_x(spring.unsupported_turns + spring.bore_turns) - 0.5 * pitch_m;
-    let off_hub = spring.unsupported_turns + spring.free_turns;
-    let total = off_hub + spring.hub_turns;
-    let hub_x = [coil_x(off_hub) - 0.5 * pitch_m, coil_x(total) + 0.5 * wire_m];
-    let shaft_m = 0.5 * making.hub_bore_m;
-    let bore_outer_m = (0.5 * built.bore_m + making.ring_wall_m).max(outer_m);
-    let mut items = vec![
-        block([0.0, face_m], [ring.tip_radius_m, outer_m], named(Look::Plate, "ring")),
-        // Its rim reaches over the carrier to the seat of the spring's end.
-        block([face_m, face_m + 0.55 * plate_m], [ring.root_radius_m, outer_m], named(Look::Plate, "ring")),
-        block([face_m + 0.55 * plate_m, face_m + plate_m], [0.5 * built.bore_m - 2.0 * wire_m, outer_m], named(Look::Plate, "ring")),
-        block([0.0, face_m], [arm_m - planet.tip_radius_m, arm_m + planet.tip_radius_m], named(Look::Moving, "planet and sun")),
-        block([-2.0 * plate_m, face_m], [0.0, sun.tip_radius_m.min(arm_m - planet.root_radius_m)], named(Look::Moving, "planet and sun")),
-        block([-0.5 * plate_m, 0.0], [arm_m - 0.5 * planet.root_radius_m, arm_m + 0.5 * planet.root_radius_m], named(Look::Bar, "carrier")),
-        block([face_m, face_m + 0.5 * plate_m], [0.0, arm_m + 0.5 * planet.root_radius_m], named(Look::Bar, "carrier")),
-        block([face_m + 0.5 * plate_m, hub_x[1]], [0.0, shaft_m], named(Look::Bar, "carrier")),
-        block(hub_x, [shaft_m, 0.5 * built.hub_m], named(Look::Plate, "hub, surface A")),
-        block(
-            [coil_x(spring.unsupported_turns) - 0.5 * pitch_m, bore_end],
-            [0.5 * built.bore_m, bore_outer_m],
-            named(Look::Plate, "bore, surface B"),
-        ),
-        block([-plate_m, hub_x[1] + plate_m], [bore_outer_m + wire_m, bore_outer_m + wire_m + 0.5 * plate_m], named(Look::Rail, "chassis")),
-    ];
-    let clutch = &behaviour.clutch;
-    let free_m = clutch.dimensions().neutral_radius_m;
-    let whole = (0_u32..).map(f64::from).take_while(|turn| *turn <= total);
-    for turn in whole {
-        let radius_m = if turn >= off_hub { clutch.hub_radius_m() } else { free_m };
-        items.push(Item::Disc { centre: [coil_x(turn), radius_m], radius_m: 0.5 * wire_m, role: named(Look::Wire, "spring") });
-    }
-    items.push(line(vec![[-2.0 * plate_m, 0.0], [hub_x[1] + 2.0 * plate_m, 0.0]], 0.0, Role::Construction));
+    let (built, spring) = (&design.built, &design.built.spring);
+    let sizes = Sizes::of(design, &behaviour.train);
+    let shaft_m = 0.5 * sizes.shaft_m;
+    let end_m = sizes.envelope_m[1];
+    let beyond_m = long(sizes.first_plate);
+    let mut items = discs(design, &sizes);
+    items.push(block([sizes.gears[0] - 2.0 * beyond_m, sizes.gears[1]], [0.0, sun_tip_m(&sizes)], named(Look::Moving, "sun and planet")));
+    items.push(block([sizes.second_plate[0], end_m + beyond_m], [0.0, shaft_m], named(Look::Moving, "shaft of the output")));
+    items.push(block(sizes.hub, [shaft_m, 0.5 * built.hub_m], named(Look::Plate, "hub, surface A")));
+    items.extend(coil(design, behaviour, &sizes));
+    items.push(line(vec![[-2.0 * beyond_m, 0.0], [end_m + 2.0 * beyond_m, 0.0]], 0.0, named(Look::Axis, "axis")));
     let [hub_gap, bore_gap] = built.gaps_m();
     let length = |m: f64| format_si(m, &design.units.length, 4);
     Scene {
@@ -245,11 +212,64 @@ pub(crate) fn section(design: &Design, behaviour: &Behaviour) -> Scene {
         words: ["", ""],
         display: design.units.length.clone(),
         description: format!(
-            "Upper half of a section along the axis: gears on the left, the spring with {} turns on the hub (δa {}) and {} in the bore (δb {}).",
+            "Upper half of a section along the axis: gears on the left, the spring with {} turns on the hub (δa {}) and {} in the bore (δb {}). {} long without shafts and axial play, diameter {}.",
             format_number(spring.hub_turns, 3),
             length(hub_gap),
             format_number(spring.bore_turns, 3),
-            length(bore_gap)
+            length(bore_gap),
+            length(end_m),
+            length(sizes.envelope_m[0]),
         ),
     }
+}
+
+/// The sun ends where the planet begins.
+fn sun_tip_m(sizes: &Sizes) -> f64 {
+    let [sun, planet, _] = &sizes.wheels;
+    sun.tip_radius_m.min(sizes.arm_m - planet.root_radius_m)
+}
+
+/// Rings, plates, bolts and pins around the middle.
+fn discs(design: &Design, sizes: &Sizes) -> Vec<Item> {
+    let [_, planet, ring] = &sizes.wheels;
+    let half = |diameter_m: f64| 0.5 * diameter_m;
+    let (ring_m, chassis_m, carrier_m) = (half(sizes.ring_m), half(sizes.chassis_m), half(sizes.carrier_m));
+    let around = |circle_m: f64, diameter_m: f64| [circle_m - half(diameter_m), circle_m + half(diameter_m)];
+    let [screws, bolts] = [around(sizes.screw_circle_m, sizes.screw_m), around(sizes.bolt_circle_m, sizes.bolt_m)];
+    let [ring_look, carrier, fixed] = [named(Look::Plate, "ring and its seat"), named(Look::Bar, "carrier"), named(Look::Plate, "chassis")];
+    let (bolt, spacer) = (named(Look::Rail, "screws"), named(Look::Rail, "spacers"));
+    let wall_m = sizes.wall_m;
+    vec![
+        block(sizes.gears, [ring.tip_radius_m, ring_m], ring_look),
+        block(sizes.second_plate, around(sizes.screw_circle_m, 0.8 * wall_m), spacer),
+        block(sizes.seat, [half(seat_hole_m(design)), ring_m], ring_look),
+        block([sizes.gears[0], sizes.seat[1]], screws, bolt),
+        block(sizes.gears, around(sizes.arm_m, 2.0 * planet.tip_radius_m), named(Look::Moving, "sun and planet")),
+        block(sizes.first_plate, [half(sizes.sun_hole_m), carrier_m], carrier),
+        block(sizes.second_plate, [half(sizes.shaft_m), carrier_m], carrier),
+        block([sizes.first_plate[0], sizes.second_plate[1]], around(sizes.arm_m, sizes.pins_m), named(Look::Bar, "pin")),
+        block(sizes.friction_ring, [half(design.built.bore_m), chassis_m], named(Look::Plate, "friction ring, surface B")),
+        block([sizes.friction_ring[1], sizes.chassis[0]], around(sizes.bolt_circle_m, 0.8 * wall_m), spacer),
+        block(sizes.chassis, [half(sizes.shaft_m), chassis_m], fixed),
+        block([sizes.friction_ring[0], sizes.chassis[1]], bolts, bolt),
+    ]
+}
+
+/// The wire where it passes through the section, and its end in the seat.
+fn coil(design: &Design, behaviour: &Behaviour, sizes: &Sizes) -> Vec<Item> {
+    let spring = &design.built.spring;
+    let role = named(Look::Wire, "spring");
+    let off_hub = spring.unsupported_turns + spring.free_turns;
+    let total = off_hub + spring.hub_turns;
+    let free_m = behaviour.clutch.dimensions().neutral_radius_m;
+    let leg_m = leg_m(design);
+    let from_m = sizes.seat[1] + sizes.first_turn_m;
+    let mut items = vec![block([sizes.seat[0], from_m], [leg_m - 0.5 * spring.wire_m, leg_m + 0.5 * spring.wire_m], role)];
+    items.extend((0_u32..).map(f64::from).take_while(|turn| *turn <= total).map(|turn| {
+        // Where it climbs onto the hub it is halfway.
+        let climbed = (turn - off_hub + 0.5).clamp(0.0, 1.0);
+        let radius_m = free_m + climbed * (behaviour.clutch.hub_radius_m() - free_m);
+        Item::Disc { centre: [from_m + turn * sizes.pitch_m, radius_m], radius_m: 0.5 * spring.wire_m, role }
+    }));
+    items
 }

@@ -523,7 +523,7 @@ impl Describe for Motor {
             &current("current_limit", "Largest current of the electronics; by default none.").above(0.0, 1e4),
             &mut self.current_limit,
         );
-        let doc = "Largest speed that the motor endures: for the reduction of a transmission of one speed.";
+        let doc = "Largest speed that the motor endures: that of the closing is held against it.";
         v.quantity(&Param::new("max_speed", doc).of(Dimension::AngularSpeed).above(0.0, 1e6), &mut self.max_speed);
         self.battery.describe(v, &Param::new("battery", "The battery: for the number of grasps."));
     }
@@ -545,13 +545,16 @@ impl Describe for Parts {
             &size("planet_bore", "Hole through the planets, for their pins; by default a third of their root diameter."),
             &mut self.planet_bore,
         );
-        v.quantity(&size("hub_bore", "Hole through the hub; by default half of its diameter."), &mut self.hub_bore);
+        v.quantity(&size("hub_bore", "Hole through the hub, for the shaft of the output; by default half of its diameter, or less where the pins of the planets stand in its way."), &mut self.hub_bore);
         v.quantity(
-            &size("plate_thickness", "Thickness of the plates of carrier and chassis; by default 4 modules."),
+            &size("plate_thickness", "Thickness of the plates of carrier and chassis and of the spring's seat; by default 4 modules."),
             &mut self.plate_thickness,
         );
         v.quantity(
-            &size("chassis_diameter", "Outer diameter of the chassis; by default that of the ring and twice `ring_wall`."),
+            &size(
+                "chassis_diameter",
+                "Outer diameter of chassis and friction ring; by default that of ring or bore, whichever is larger, and twice `ring_wall`.",
+            ),
             &mut self.chassis_diameter,
         );
         v.quantity(&Param::new("density", "Density of the turned parts.").of(Dimension::Density).above(0.0, 3e4), &mut self.density);

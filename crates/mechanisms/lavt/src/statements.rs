@@ -108,10 +108,10 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
     let Some(required) = &design.requirements else { return closing(design, behaviour) };
     let torque = |nm: f64| format_si(nm, &design.units.torque, 4);
     // The paper's model and the corrected one do not agree on what happens.
-    if let Ok(spring) = clutch(&design.built, Source::Corrected)
-        && design.source == Source::Paper
+    if design.source == Source::Paper
+        && let Ok(spring) = clutch(&design.built, Source::Corrected)
+        && let Ok(corrected) = Statics::new(&design.built, &spring, design.built.friction, behaviour.train.mesh_loss())
     {
-        let corrected = Statics::new(&design.built, &spring, design.built.friction, behaviour.train.mesh_loss());
         let (state, output_nm) = corrected.output(required.input_nm);
         if state != State::ModeII {
             all.push(Warning {

@@ -3,7 +3,7 @@
 //! With k = (1 − R)/R the torque on the spring is k `τ_in`: that of the ring on its planets. Mode I ends at `τ_t`; then the bore holds the
 //! ring, and the carrier turns once the hub slips, `τ_in/R` = `τ_out` + `τ_b`. Losses count at the output. Theory: `docs/theory/lavt.md`.
 
-use forcewright_elements::wrap_spring::{Dimensions, Limits, Model, Options, WrapSpring, WrapSpringError};
+use forcewright_elements::wrap_spring::{Dimensions, Model, Options, WrapSpring, WrapSpringError};
 
 use crate::design::{Built, Source};
 
@@ -79,13 +79,14 @@ pub fn clutch(built: &Built, source: Source) -> Result<WrapSpring, WrapSpringErr
 }
 
 impl Statics {
-    /// The torques of a transmission with these coefficients of friction on hub and bore.
-    pub fn new(built: &Built, clutch: &WrapSpring, friction: [f64; 2], mesh_loss: f64) -> Self {
-        // Coefficients below zero hold nothing.
-        let none = Limits { transition_nm: clutch.transition_nm(), hub_slip_nm: 0.0, lock_nm: 0.0, grip_nm: None };
-        let limits = clutch.limits_on(friction).unwrap_or(none);
+    /// The torques of a transmission with these coefficients of friction on hub and bore, at least 0.
+    ///
+    /// # Errors
+    /// Friction below zero, or not a number.
+    pub fn new(built: &Built, clutch: &WrapSpring, friction: [f64; 2], mesh_loss: f64) -> Result<Self, WrapSpringError> {
+        let limits = clutch.limits_on(friction)?;
         let [one, two] = built.losses;
-        Self {
+        Ok(Self {
             ratio: built.ratio(),
             transition_nm: limits.transition_nm,
             hub_nm: limits.hub_slip_nm,
@@ -93,7 +94,7 @@ impl Statics {
             lock_nm: limits.lock_nm,
             proportional: [one.proportional.unwrap_or(0.0), two.proportional.unwrap_or(mesh_loss)],
             constant_nm: [one.constant_nm, two.constant_nm],
-        }
+        })
     }
 
     /// Torque on the spring over that at the input, k = (1 − R)/R.

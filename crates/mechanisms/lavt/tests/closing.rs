@@ -1,27 +1,18 @@
 //! The hand that closes, against closed forms, statics, energy balance, invariances and a second program.
 
-use forcewright_base::diagnostics::Diagnostics;
+mod common;
+
 use forcewright_base::maths::exp;
 use forcewright_contract::family::Mechanism as _;
-use forcewright_contract::project::{Choices, Project};
-use forcewright_contract::read;
 use forcewright_lavt::{
-    Behaviour, ClosingSettings, Design, Ending, Grasp, Hand, Lavt, Lever, Measured, Motor, OneSpeed, Phase, Source, Spec, State, Statics,
+    Behaviour, ClosingSettings, Design, Ending, Grasp, Hand, Lavt, Lever, Measured, Motor, OneSpeed, Phase, Source, State, Statics,
     grasp_one_speed, grasp_with, measure,
 };
 
+use common::design;
+
 const HAND: &str = include_str!("../../../../examples/lavt/prosthetic-hand.toml");
 const BUTIN_1: &str = include_str!("../../../../examples/lavt/butin-1.toml");
-
-fn design(text: &str, set: &[&str]) -> Design {
-    let choices = Choices { variant: None, set: set.iter().map(|s| (*s).to_owned()).collect() };
-    let project = Project::from_text("test.toml", text, &choices);
-    let mut diagnostics: Diagnostics = project.diagnostics;
-    let mut spec: Spec = read::read(&project.tree, project.root, &mut diagnostics);
-    let design = Lavt::resolve(&mut spec, &mut diagnostics);
-    let said: Vec<_> = diagnostics.in_file_order().iter().map(|d| format!("{d:?}")).collect();
-    design.unwrap_or_else(|| panic!("{said:#?}"))
-}
 
 fn hand(design: &mut Design) -> &mut Hand {
     design.hand.as_mut().expect("a hand")
@@ -630,4 +621,54 @@ fn what_a_designer_should_know_is_said() {
     let down = "motor.supply_profile=[[\"0 s\", \"0 V\"], [\"0.1 s\", \"6 V\"], [\"0.6 s\", \"6 V\"], [\"0.9 s\", \"0.3 V\"]]";
     assert_eq!(codes(&[down, "hand.non_backdrivable=false", "hand.force=\"1000 N\""]), ["W0813"]);
     assert!(codes(&[]).is_empty());
+}
+
+/// The motor turns fastest before the touch, a little below its speed without load; its limit is judged, and stands in the figure.
+#[test]
+fn the_speed_of_the_motor_is_held_against_its_limit() {
+    let (behaviour, measured) = solved(&design(HAND, &[]));
+    let most = measured.get("motor_speed_max").expect("a speed");
+    let grasp = behaviour.grasp.as_ref().expect("a closing");
+    let idle = 6.0 / 5.35e-3;
+    assert!(most < idle && most > 0.9 * idle, "{most} {idle}");
+    let sampled = 18.0 * grasp.trace.iter().map(|i| i.input_rad_per_s.abs()).fold(0.0, f64::max);
+    assert!(most >= sampled && most < 1.001 * sampled, "{most} {sampled}");
+    // Between the states of a coarse trace too: every eighth of them tells the same.
+    let coarse = Grasp { trace: grasp.trace.iter().step_by(8).copied().collect(), ..grasp.clone() };
+    near(18.0 * coarse.peak_input_rad_per_s(), most, 1e-3);
+    let judged = |limit: &str| {
+        let analysis = Lavt::analyse(&design(HAND, &[&format!("motor.max_speed=\"{limit}\"")]), &mut |_| true);
+        let check = analysis.outcome.checks.iter().find(|c| c.code == "LAVT021").cloned().expect("a check");
+        let figure = analysis.figures.iter().find(|f| f.id == "closing_speed").expect("a figure");
+        let forcewright_model::FigureContent::Plot(plot) = &figure.content else { panic!("no plot") };
+        (check, plot.levels.iter().map(|l| l.at).collect::<Vec<_>>())
+    };
+    let (check, levels) = judged("12000 rpm");
+    assert!(check.required && check.advice.is_none() && (levels[0] * 18.0 / 1256.637 - 1.0).abs() < 1e-6, "{check:?} {levels:?}");
+    let (check, _) = judged("9000 rpm");
+    // The advice does what it says: with that part of the voltage the limit is kept.
+    let advice = check.advice.expect("advice");
+    let part: f64 = advice.split(' ').nth(1).and_then(|n| n.parse().ok()).unwrap_or_else(|| panic!("{advice}"));
+    let slower = design(HAND, &[&format!("motor.supply=\"{} V\"", 6.0 * part)]);
+    let speed = solved(&slower).1.get("motor_speed_max").expect("a speed");
+    assert!(speed < 942.478 && speed > 0.95 * 942.478, "{advice}: {speed}");
+    assert!(Lavt::analyse(&design(HAND, &[]), &mut |_| true).outcome.checks.iter().all(|c| c.code != "LAVT021"));
+}
+
+/// A force that is reached is one that was wanted; a stall below it is a miss, not a quicker grasp.
+#[test]
+fn a_weaker_grasp_misses_the_force_that_is_wanted() {
+    let of = |set: &[&str]| {
+        let outcome = Lavt::analyse(&design(HAND, set), &mut |_| true).outcome;
+        let met = outcome.requirements_met();
+        (outcome.checks.into_iter().find(|c| c.code == "LAVT022"), met)
+    };
+    let (check, met) = of(&[]);
+    assert!(met && check.expect("a check").advice.is_none());
+    let (check, met) = of(&["motor.reduction=10"]);
+    let check = check.expect("a check");
+    assert!(!met && check.required && check.value.is_some_and(|n| (30.0..50.0).contains(&n)), "{check:?}");
+    let text = HAND.replace("object_stiffness = \"2.5 N/mm\"", "");
+    let outcome = Lavt::analyse(&design(&text, &[]), &mut |_| true).outcome;
+    assert!(outcome.checks.iter().all(|c| c.code != "LAVT022"));
 }

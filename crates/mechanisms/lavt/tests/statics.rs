@@ -1,13 +1,14 @@
 //! Statics of both modes against closed forms, balance of power, continuity and limits.
 
+mod common;
+
 use std::f64::consts::{PI, TAU};
 
-use forcewright_base::diagnostics::Diagnostics;
 use forcewright_base::maths::exp;
 use forcewright_contract::family::Mechanism as _;
-use forcewright_contract::project::{Choices, Project};
-use forcewright_contract::read;
-use forcewright_lavt::{Behaviour, Built, Design, Lavt, Source, Spec, State, Statics, clutch};
+use forcewright_lavt::{Behaviour, Built, Lavt, Source, State, Statics, clutch};
+
+use common::design;
 
 const EXAMPLES: [&str; 3] = [
     include_str!("../../../../examples/lavt/butin-1.toml"),
@@ -15,17 +16,8 @@ const EXAMPLES: [&str; 3] = [
     include_str!("../../../../examples/lavt/butin-3.toml"),
 ];
 
-fn design(text: &str, set: &[&str]) -> Design {
-    let choices = Choices { variant: None, set: set.iter().map(|s| (*s).to_owned()).collect() };
-    let project = Project::from_text("test.toml", text, &choices);
-    let mut diagnostics: Diagnostics = project.diagnostics;
-    let mut spec: Spec = read::read(&project.tree, project.root, &mut diagnostics);
-    let design = Lavt::resolve(&mut spec, &mut diagnostics);
-    design.unwrap_or_else(|| panic!("{:?}", diagnostics.in_file_order()))
-}
-
 fn statics(built: &Built, source: Source, friction: f64) -> Statics {
-    Statics::new(built, &clutch(built, source).expect("a spring"), [friction; 2], 0.0)
+    Statics::new(built, &clutch(built, source).expect("a spring"), [friction; 2], 0.0).expect("friction")
 }
 
 /// A transmission that shifts, with losses in both modes.
@@ -238,4 +230,103 @@ fn corners_without_a_spring_are_the_worst() {
     let behaviour = Behaviour::of(&design(EXAMPLES[1], &set)).expect("a transmission");
     assert!(behaviour.statics.grip_nm.is_some(), "as designed it shifts");
     assert!(behaviour.worst.grip_nm.is_none() && behaviour.worst.hub_nm <= 0.0);
+}
+
+/// What requirements see over friction and tolerances: no design within them lies beyond, and some come near. Designs from a grid of the
+/// whole box, not of its corners.
+#[test]
+fn nothing_within_the_tolerances_lies_beyond_its_ends() {
+    let [mut shifting, mut slipping] = [0; 2];
+    let hand = include_str!("../../../../examples/lavt/prosthetic-hand.toml");
+    let loose = [
+        "design.friction.hub=0.2 ± 0.08",
+        "design.friction.bore=0.2 ± 0.08",
+        "losses.mode_2.proportional=5 %",
+        "losses.mode_1.constant=1 N*mm",
+    ];
+    for (text, set) in [(hand, &[][..]), (hand, &loose[..]), (EXAMPLES[1], &loose[..]), (EXAMPLES[2], &loose[..1])] {
+        let design = design(text, set);
+        let behaviour = Behaviour::of(&design).expect("a transmission");
+        let input_nm = design.requirements.as_ref().expect("asked for").input_nm;
+        let mut seen = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        let steps = 4;
+        let at = |[low, high]: [f64; 2], i: usize| low + (high - low) * i as f64 / f64::from(steps);
+        let side = usize::try_from(steps).expect("few") + 1;
+        for i in 0..side.pow(5) {
+            let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|axis| i / side.pow(axis) % side);
+            let (mut built, scatter) = (design.built, &design.scatter);
+            built.spring.wire_m += at(scatter.wire_m, a);
+            built.spring.inner_m += at(scatter.inner_m, b);
+            built.hub_m += at(scatter.hub_m, c);
+            built.bore_m += at(scatter.bore_m, d);
+            let friction = [built.friction[0] + at(scatter.hub_friction, e), built.friction[1] + at(scatter.bore_friction, e)];
+            let spring = clutch(&built, design.source).expect("a spring");
+            let statics = Statics::new(&built, &spring, friction, behaviour.train.mesh_loss()).expect("friction");
+            let (state, output_nm) = statics.output(input_nm);
+            shifting += usize::from(state == State::ModeII);
+            slipping += usize::from(matches!(state, State::SlipsBeforeShift | State::SlipsInBore));
+            let values = [statics.transition_output_nm(), output_nm, statics.efficiency(input_nm).unwrap_or(0.0)];
+            for (seen, value) in seen.iter_mut().zip(values) {
+                *seen = [seen[0].min(value), seen[1].max(value)];
+            }
+        }
+        let over = behaviour.over;
+        let [low, high] = over.transition_output_nm;
+        for (ours, theirs) in [
+            (low, seen[0][0]),
+            (high, seen[0][1]),
+            (over.output_nm.expect("asked"), seen[1][0]),
+            (over.efficiency.expect("asked"), seen[2][0]),
+        ] {
+            // The grid has the corners: the ends are those of the whole box.
+            assert!((ours - theirs).abs() <= 1e-12 * theirs.abs(), "{set:?}: {ours} {theirs}");
+        }
+        assert!(low < high && low <= behaviour.statics.transition_output_nm() && behaviour.statics.transition_output_nm() <= high);
+    }
+    assert!(shifting > 1000 && slipping > 1000, "{shifting} {slipping}: there should be both");
+}
+
+/// Checks over the range stand beside those of the drawing, and decide in the corrected model; the paper's knows no friction.
+#[test]
+fn requirements_are_judged_as_drawn_and_over_the_range() {
+    let hand = include_str!("../../../../examples/lavt/prosthetic-hand.toml");
+    let checks = |set: &[&str]| Lavt::analyse(&design(hand, set), &mut |_| true).outcome.checks;
+    let names = ["transition_torque_min", "transition_torque_max", "output_torque", "efficiency"];
+    let most = "requirements.transition_torque.max=20 N*mm";
+    let all = checks(&[most]);
+    assert!(all.iter().all(|c| c.advice.as_ref().is_none_or(|a| !a.contains("there is no metric"))), "{all:#?}");
+    for name in names {
+        let [drawn, always] = [name.to_owned(), format!("{name}_always")]
+            .map(|name| all.iter().find(|c| c.name == name).cloned().unwrap_or_else(|| panic!("no {name}")));
+        assert!(drawn.required && always.required && drawn.code == always.code && drawn.limit == always.limit);
+        assert!(always.margin < drawn.margin, "{name}");
+    }
+    // Met as drawn, missed at a corner: the advice says both.
+    let tight = checks(&["requirements.output_torque.min=405 N*mm"]);
+    let of = |name: &str| tight.iter().find(|c| c.name == name).expect("there");
+    assert!(
+        of("output_torque").advice.is_none() && of("output_torque_always").advice.as_ref().is_some_and(|a| a.contains("as drawn it is"))
+    );
+    let paper = checks(&["model.source=paper", most]);
+    assert!(paper.iter().filter(|c| c.name.ends_with("_always")).all(|c| !c.required));
+    // Without anything that scatters there is no second judgement.
+    let plain = [
+        "design.friction.hub=0.12",
+        "design.friction.bore=0.12",
+        "design.spring.wire_diameter=1 mm",
+        "design.spring.inner_diameter=16.4 mm",
+        "design.hub.diameter=17.9 mm",
+        "design.bore.diameter=19.4 mm",
+    ];
+    assert!(checks(&plain).iter().all(|c| c.name != "output_torque_always"));
+}
+
+/// Friction that is none is refused, not taken for nothing.
+#[test]
+fn friction_below_zero_is_an_error() {
+    let built = design(EXAMPLES[1], &[]).built;
+    let spring = clutch(&built, Source::Corrected).expect("a spring");
+    for friction in [[-0.1, 0.1], [0.1, -0.1], [f64::NAN, 0.1]] {
+        assert!(Statics::new(&built, &spring, friction, 0.0).is_err());
+    }
 }

@@ -101,7 +101,15 @@ fn verdict(report: &Report) -> String {
         (_, _, 0) => ("missed", "✗", format!("{missed} of {all} requirements missed")),
         _ => ("missed", "✗", format!("{missed} of {all} requirements missed, {open} not assessed")),
     };
-    format!("<p class=\"verdict {class}\"><span class=\"mark\" aria-hidden=\"true\">{mark}</span> <strong>{text}</strong></p>\n")
+    // Rules that nobody asked for decide nothing, but are counted where they are missed.
+    let own = report.outcome.checks.len() - all;
+    let further = match count(report, false, CheckState::Missed) {
+        0 => String::new(),
+        missed => format!("; {missed} of {own} further checks missed"),
+    };
+    format!(
+        "<p class=\"verdict {class}\"><span class=\"mark\" aria-hidden=\"true\">{mark}</span> <span><strong>{text}</strong>{further}</span></p>\n"
+    )
 }
 
 fn status(report: &Report) -> String {

@@ -61,7 +61,7 @@ fn plots_of_huge_and_tiny_numbers() {
         for b in NUMBERS {
             let mut plot = plot_of(vec![a, b, 1.0], vec![b, a, 1.0]);
             plot.levels = vec![HorizontalLine { at: a, label: "level".to_owned(), stroke: Stroke::Limit }];
-            plot.spans = vec![VerticalSpan { from: a, to: b, label: "span".to_owned() }];
+            plot.spans = vec![VerticalSpan { from: a, to: b, label: "span".to_owned(), hatched: false }];
             plot.markers = vec![Marker { x: a, y: b, label: "m".to_owned(), note: "m = 1".to_owned() }];
             sound(&svg::draw_plot(&plot, PlotSize::default()));
         }
@@ -75,7 +75,7 @@ fn crowds_and_long_texts() {
     for i in 0..60 {
         let (x, y) = (f64::from(i % 8) * 1e-3, f64::from(i / 8));
         plot.markers.push(Marker { x, y, label: format!("point {i}"), note: if i == 3 { long.clone() } else { String::new() } });
-        plot.spans.push(VerticalSpan { from: x, to: x + 1e-3, label: format!("span {i}") });
+        plot.spans.push(VerticalSpan { from: x, to: x + 1e-3, label: format!("span {i}"), hatched: i % 2 == 0 });
         plot.levels.push(HorizontalLine { at: 0.3 * f64::from(i), label: format!("level {i} {long}"), stroke: Stroke::Limit });
     }
     plot.x.label = long.clone();

@@ -176,7 +176,7 @@ fn torque_figure(design: &Design, behaviour: &Behaviour, measured: &Measured) ->
         require_law((law, *band), &turns, behaviour.window_rad, &design.units.torque, &mut plot);
     }
     let [from, to] = behaviour.window_rad;
-    plot.spans.push(VerticalSpan { from, to, label: "window".to_owned() });
+    plot.spans.push(VerticalSpan { from, to, label: "window".to_owned(), hatched: false });
     let mut caption = "The torque on the shaft at rest, turned against the springs and back.".to_owned();
     if let (Some(area), Some(up), Some(down)) =
         (measured.get("loop_area"), measured.get("torque_up_mean"), measured.get("torque_down_mean"))

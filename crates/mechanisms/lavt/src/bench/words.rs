@@ -233,7 +233,7 @@ pub(crate) fn warnings(design: &Design) -> Option<Warning> {
     let largest_nm = bench.largest_nm()?;
     let spring = clutch(&design.built, design.source).ok()?;
     let [_, friction] = design.frictions();
-    let statics = Statics::new(&design.built, &spring, friction, 0.0);
+    let statics = Statics::new(&design.built, &spring, friction, 0.0).ok()?;
     let (state, _) = statics.output(largest_nm);
     matches!(state, State::SlipsBeforeShift | State::SlipsInBore).then(|| Warning {
         code: "W0830",

@@ -7,7 +7,7 @@ use forcewright_model::{Axis, Branch, Curve, Figure, FigureContent, HorizontalLi
 
 use super::{ClosingSettings, Ending, Grasp, Instant, OneSpeed, Phase, as_fast, as_strong, grasp_one_speed};
 use crate::analysis::Behaviour;
-use crate::design::{Design, Hand};
+use crate::design::{Design, Hand, Motor};
 
 /// Closings that are compared.
 pub(crate) struct Closings<'a> {
@@ -122,10 +122,17 @@ impl<'a> Closings<'a> {
         self.quantities().into_iter().map(one).collect()
     }
 
+    fn motor(&self) -> Option<&Motor> {
+        self.design.motor.as_ref()
+    }
+
     fn levels(&self, id: &str) -> Vec<HorizontalLine> {
         let (at, label) = match id {
             "closing_force" => (super::target_n(self.design), "wanted"),
-            "closing_current" => (self.design.motor.as_ref().map_or(f64::INFINITY, |m| m.limit_a), "limit"),
+            "closing_current" => (self.motor().map_or(f64::INFINITY, |m| m.limit_a), "limit"),
+            "closing_speed" => {
+                (self.motor().and_then(|m| Some(m.max_rad_per_s? / m.reduction)).unwrap_or(f64::INFINITY), "limit of the motor")
+            }
             _ => return Vec::new(),
         };
         if at.is_finite() { vec![HorizontalLine { at, label: label.to_owned(), stroke: Stroke::Limit }] } else { Vec::new() }
@@ -140,7 +147,7 @@ impl<'a> Closings<'a> {
             match spans.last_mut() {
                 Some(last) if to_s - from_s < 0.01 * end_s || last.label == phase.word() => last.to = to_s,
                 None if to_s - from_s < 0.01 * end_s && *phase == Phase::Stands => {}
-                _ => spans.push(VerticalSpan { from: *from_s, to: to_s, label: phase.word().to_owned() }),
+                _ => spans.push(VerticalSpan { from: *from_s, to: to_s, label: phase.word().to_owned(), hatched: false }),
             }
         }
         spans

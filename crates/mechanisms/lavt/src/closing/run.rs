@@ -173,6 +173,7 @@ impl<'a> Run<'a> {
             current_a: f.current_a,
             current_rate: if limited { 0.0 } else { (slope - back_emf_rate) / plant.motor.resistance_ohm },
             input_rad_per_s: y[SUN_RATE],
+            input_rate: f.sun_acceleration,
             output_rad_per_s: y[CARRIER_RATE],
             input_nm: f.input_nm,
             hub_nm: f.hub_nm,

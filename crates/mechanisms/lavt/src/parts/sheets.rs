@@ -8,9 +8,10 @@ use forcewright_elements::gears::{Wheel, involute};
 use forcewright_elements::wrap_spring::{Coil, Effect, Hand, Sense, effect, wire_tolerance_m};
 use forcewright_model::Sheet;
 
-use super::{AIR, Sizes};
+use super::{PIN, PIN_IN_CARRIER, PIN_IN_PLANET, fitted};
 use crate::analysis::Behaviour;
 use crate::design::Design;
+use crate::sizes::{AIR, Sizes, long};
 
 fn sheet(name: &str, caption: &str, columns: &[&str], rows: Vec<Vec<String>>) -> Sheet {
     Sheet { name: name.to_owned(), caption: caption.to_owned(), columns: columns.iter().map(|&c| c.to_owned()).collect(), rows }
@@ -50,11 +51,11 @@ fn spring(design: &Design, behaviour: &Behaviour) -> Sheet {
         radius_m: 0.5 * (spring.inner_m + spring.wire_m),
         turns,
         gap_m: (AIR - 1.0) * spring.wire_m,
-        // As it is drawn: bent along the axis, into the ring.
+        // As it is drawn: bent along the axis, through the seat.
         ends_m: super::coil(design).ends_m().iter().sum(),
     };
     if let Ok(winding) = coil.winding(design.wire.density_kg_per_m3.unwrap_or(1.0)) {
-        row("length of wire / mm", mm(winding.wire_length_m), "with the end that is bent along the axis, into the ring");
+        row("length of wire / mm", mm(winding.wire_length_m), "with the end that is bent along the axis, through the seat");
         row("length of the body / mm", mm(winding.body_m), "a tenth of the wire between turns");
         if design.wire.density_kg_per_m3.is_some() {
             row("mass / g", format_number(1e3 * winding.mass_kg, 4), "");
@@ -105,6 +106,13 @@ fn inspection(design: &Design, sizes: &Sizes) -> Sheet {
     }
     rows.push(vec!["ring".to_owned(), "tip diameter, inside".to_owned(), mm(2.0 * sizes.wheels[2].tip_radius_m), String::new()]);
     rows.push(vec!["carrier".to_owned(), "radius of the pins".to_owned(), mm(sizes.arm_m), "even spacing".to_owned()]);
+    for (part, what, fit) in [
+        ("pins", "diameter", PIN),
+        ("carrier", "holes for the pins, pressed", PIN_IN_CARRIER),
+        ("planet", "hole for the pin, running", PIN_IN_PLANET),
+    ] {
+        rows.push(vec![part.to_owned(), what.to_owned(), mm(sizes.pins_m), fitted(design, fit, sizes.pins_m)]);
+    }
     sheet("inspection", "What to measure: nominal sizes in mm, and what is allowed.", &["part", "what", "size / mm", "allowed"], rows)
 }
 
@@ -133,6 +141,14 @@ fn assembly(design: &Design, behaviour: &Behaviour, sizes: &Sizes) -> Sheet {
             format_number(behaviour.clutch.dead_turns() * behaviour.statics.leverage(), 4),
         ),
     ];
-    let rows = rows.into_iter().map(|(a, b)| vec![a, b]).collect();
+    let along = [
+        ("outer diameter / mm", sizes.envelope_m[0]),
+        ("length along the axis, without play / mm", sizes.envelope_m[1]),
+        ("spacers of ring and seat, without play / mm", sizes.ring_spacers_m()),
+        ("friction ring up to the seat, long / mm", long(sizes.friction_ring)),
+        ("spacers of friction ring and chassis / mm", sizes.chassis_spacers_m()),
+    ];
+    let rows = rows.into_iter().chain(along.map(|(what, m)| (what.to_owned(), mm(m))));
+    let rows = rows.map(|(a, b)| vec![a, b]).collect();
     sheet("assembly", "How it goes together.", &["what", "value"], rows)
 }

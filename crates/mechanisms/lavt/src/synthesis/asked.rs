@@ -93,11 +93,7 @@ pub(super) struct Asked {
     pub spring_half_m: f64,
     pub hub_made: Made,
     pub bore_made: Made,
-    /// What `[parts]` says of the wall of the ring, the hole through the hub and the plates, m.
-    pub ring_wall_m: Option<f64>,
-    pub hub_bore_m: Option<f64>,
-    pub plate_m: Option<f64>,
-    /// Losses, motor, hand stand in it.
+    /// Losses, motor, hand, and what `[parts]` says stand in it.
     pub template: Design,
 }
 
@@ -220,9 +216,6 @@ pub(super) fn asked(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics)
         spring_half_m: si(&section.tolerances.spring).unwrap_or(SPRING_HALF_M),
         hub_made: made(&section.tolerances.hub, diagnostics)?,
         bore_made: made(&section.tolerances.bore, diagnostics)?,
-        ring_wall_m: si(&spec.parts.ring_wall),
-        hub_bore_m: si(&spec.parts.hub_bore),
-        plate_m: si(&spec.parts.plate_thickness),
         template: design.clone(),
     };
     let [_, springs] = found.raw();

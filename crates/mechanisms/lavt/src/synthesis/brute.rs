@@ -71,7 +71,7 @@ fn grids() -> [String; 4] {
          bore_gap = { min = \"0.3 mm\", max = \"0.9 mm\", step = \"0.2 mm\" }\ngap_differences = [\"0.05 mm\", \"0.1 mm\", \"0.2 mm\", \"0.3 mm\"]\n\
          hub_turns = { min = 3, max = 6, step = 1.5 }\nbore_turns = { min = 2, max = 6, step = 1 }\n\
          sun = { min = 15, max = 18 }\nplanet = { min = 15, max = 24 }\nmodules = [\"0.4 mm\", \"0.5 mm\"]\n\
-         envelope = { diameter = \"36 mm\", length = \"24 mm\" }\nflank_friction = 0.08\n"
+         envelope = { diameter = \"39 mm\", length = \"33 mm\" }\nflank_friction = 0.08\n"
             .to_owned(),
         format!(
             "{PAPER}[requirements.limits]\nspring_safety_factor = {{ min = 1.6 }}\ndead_turns_input = {{ max = 1.6 }}\n\
@@ -85,7 +85,7 @@ fn grids() -> [String; 4] {
          wire_diameters = [\"1 mm\", \"1.1 mm\", \"1.2 mm\"]\nmean_radius = { min = \"6 mm\", max = \"9 mm\", step = \"0.5 mm\" }\n\
          bore_gap = { min = \"0.3 mm\", max = \"0.6 mm\", step = \"0.1 mm\" }\ngap_differences = [\"0.1 mm\", \"0.2 mm\", \"0.3 mm\"]\n\
          hub_turns = { min = 2, max = 6, step = 2 }\nbore_turns = { min = 2, max = 6, step = 2 }\nsun = { min = 16, max = 18 }\n\
-         planet = { min = 20, max = 24 }\n"
+         planet = { min = 20, max = 24 }\n[parts]\nchassis_diameter = \"21 mm\"\n"
             .to_owned(),
     ]
 }
@@ -128,7 +128,7 @@ fn sound(asked: &Asked, book: &Book, set: GearSet, place: [usize; 6]) -> Option<
     let design = designed(asked, &gears, place.map(|i| u16::try_from(i).expect("small")));
     for built in corners_of(&design.built, &design.scatter) {
         let spring = clutch(&built, Source::Corrected).ok()?;
-        if !asked.frictions().iter().all(|f| keeps(asked, &Statics::new(&built, &spring, *f, gears.loss))) {
+        if !asked.frictions().iter().all(|f| keeps(asked, &Statics::new(&built, &spring, *f, gears.loss).expect("friction"))) {
             return None;
         }
         let stresses = spring.stresses();
@@ -139,6 +139,14 @@ fn sound(asked: &Asked, book: &Book, set: GearSet, place: [usize; 6]) -> Option<
     }
     let measured = measure(&design, &Behaviour::of(&design).ok()?);
     let size = [measured.get("outer_diameter")?, measured.get("length")?];
+    // A chassis of its own diameter keeps a wall around the bore.
+    if design
+        .making
+        .chassis_m
+        .is_some_and(|chassis_m| chassis_m < design.built.bore_m + 2.0 * design.making.wall_m(design.built.gears.module_m))
+    {
+        return None;
+    }
     (size[0] <= asked.envelope_m[0] && size[1] <= asked.envelope_m[1]).then_some(design)
 }
 
@@ -255,7 +263,7 @@ fn bisected_gap_m(design: &Design, asked: &Asked, needed_nm: f64) -> f64 {
         corners_of(&design.built, &design.scatter).all(|mut built| {
             built.hub_m -= 2.0 * less_m;
             let Ok(spring) = clutch(&built, Source::Corrected) else { return false };
-            Statics::new(&built, &spring, asked.frictions()[0], 0.0).grip_nm.is_some_and(|nm| nm >= needed_nm)
+            Statics::new(&built, &spring, asked.frictions()[0], 0.0).expect("friction").grip_nm.is_some_and(|nm| nm >= needed_nm)
         })
     };
     let (mut low, mut high) = (0.0, 1e-3);
@@ -343,12 +351,12 @@ fn seven_of_ten_springs_that_the_paper_passes_slip() {
                 let enough = state == State::ModeII && output_nm >= 0.4 * (1.0 - 1e-12) && s.grip_nm.is_some_and(|nm| nm > 0.4);
                 enough && s.transition_output_nm() >= 0.015
             };
-            let by_paper = Statics::new(&built, &one, [0.2; 2], 0.0);
+            let by_paper = Statics::new(&built, &one, [0.2; 2], 0.0).expect("friction");
             let holds_slip =
                 by_paper.hub_nm < by_paper.transition_nm * (forcewright_base::maths::exp(std::f64::consts::TAU * turns * 0.2) - 1.0);
             if does(&by_paper) && holds_slip {
                 paper += 1;
-                both += u32::from(lasts(&other) && does(&Statics::new(&built, &other, [0.2; 2], 0.0)));
+                both += u32::from(lasts(&other) && does(&Statics::new(&built, &other, [0.2; 2], 0.0).expect("friction")));
             }
         }
     }

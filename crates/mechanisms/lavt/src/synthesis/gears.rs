@@ -12,6 +12,7 @@ use super::springs::INSIDE;
 use crate::analysis::{Behaviour, measure};
 use crate::checks::{LEAST_CONTACT_RATIO, LEAST_GAP, checks};
 use crate::design::{Built, Design, Gears};
+use crate::sizes::ring_m;
 
 /// What gears must keep to, whatever the spring.
 const GEAR_CHECKS: [&str; 6] = ["LAVT012", "LAVT013", "LAVT014", "LAVT015", "LAVT016", "LAVT017"];
@@ -106,16 +107,18 @@ pub(super) fn face_m(asked: &Asked, module: usize) -> f64 {
 
 /// Wall of the ring outside of its roots, m.
 pub(super) fn wall_m(asked: &Asked, module: usize) -> f64 {
-    asked.ring_wall_m.unwrap_or(3.0 * asked.modules_m[module])
+    asked.template.making.wall_m(asked.modules_m[module])
+}
+
+/// Thickness of the plates, m.
+pub(super) fn plate_m(asked: &Asked, module: usize) -> f64 {
+    asked.template.making.plate_m(asked.modules_m[module])
 }
 
 /// The template with this spring and these gears.
-pub(super) fn design(asked: &Asked, built: &Built, gears: Gears, module: usize) -> Design {
+pub(super) fn design(asked: &Asked, built: &Built, gears: Gears) -> Design {
     let mut design = asked.template.clone();
     design.built = Built { gears, ..*built };
-    design.making.ring_wall_m = wall_m(asked, module);
-    design.making.hub_bore_m = asked.hub_bore_m.unwrap_or(0.5 * built.hub_m);
-    design.making.plate_m = asked.plate_m.unwrap_or(4.0 * asked.modules_m[module]);
     design
 }
 
@@ -143,14 +146,14 @@ fn runs(asked: &Asked, set: GearSet, [shift, shortening]: Shifts) -> Option<Soun
         return None;
     }
     let mut sound = Sound { set, shift, shortening, ring_root_m: 0.0, ring_m: 0.0, loss: 0.0 };
-    let design = design(asked, &asked.template.built, geared(asked, &sound), set.module);
+    let design = design(asked, &asked.template.built, geared(asked, &sound));
     let behaviour = Behaviour::of(&design).ok()?;
     let found = checks(&design, &behaviour, &measure(&design, &behaviour));
     if found.iter().any(|c| c.state == CheckState::Missed && GEAR_CHECKS.contains(&c.code)) {
         return None;
     }
     sound.ring_root_m = behaviour.train.set.planet_ring.wheel.root_radius_m;
-    sound.ring_m = 2.0 * (sound.ring_root_m + wall_m(asked, set.module));
+    sound.ring_m = ring_m(sound.ring_root_m, wall_m(asked, set.module));
     sound.loss = behaviour.train.mesh_loss();
     Some(sound)
 }

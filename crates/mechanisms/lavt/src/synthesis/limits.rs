@@ -12,7 +12,7 @@ use forcewright_contract::synthesis::Watch;
 
 use super::search::{Column, long_m, running, walk};
 use super::springs::Factors;
-use crate::gears::outer_m;
+use crate::sizes::outer_m;
 
 /// A limit that can be loosened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,7 +140,8 @@ impl Knob {
             Self::Safety => seat.safety,
             Self::Stress => seat.stress_pa,
             Self::Diameter => {
-                let outer = |sound: &Sound| outer_m(sound.ring_root_m, seat.bore_m, wall_m(asked, class.module));
+                let outer =
+                    |sound: &Sound| outer_m(sound.ring_root_m, seat.bore_m, wall_m(asked, class.module), asked.template.making.chassis_m);
                 sets.iter().map(outer).fold(f64::INFINITY, f64::min)
             }
             Self::Length => long_m(asked, class, seat, [column.hub, column.bore[0]]),

@@ -8,11 +8,11 @@ use forcewright_contract::synthesis::Watch;
 
 use super::asked::Asked;
 use super::front::{Objectives, Point, front};
-use super::gears::{Book, Class, Sound, classes, design, face_m, geared, wall_m};
+use super::gears::{Book, Class, Sound, classes, design, face_m, geared, plate_m, wall_m};
 use super::springs::{Factors, Seat};
 use crate::analysis::{Behaviour, measure};
 use crate::design::{Built, Design};
-use crate::gears::{envelope_m3, length_m, outer_m};
+use crate::sizes::{envelope_m3, length_m, outer_m};
 
 /// Designs held in a class before those that others beat are dropped.
 const MOST_HELD: usize = 1 << 17;
@@ -114,8 +114,7 @@ pub(super) fn walk(
                 let from = held_nm.partition_point(|nm| *nm < class.needed_nm);
                 let long = |bore: &usize| long_m(asked, class, seat, [hub, *bore]) > asked.envelope_m[1];
                 let to = (from..held_nm.len()).find(long).unwrap_or(held_nm.len());
-                let wide = outer_m(0.0, seat.bore_m, wall_m(asked, class.module)) > asked.envelope_m[0];
-                if from < to && !wide && !each(&Column { class: index, seat, hub, bore: [from, to] }) {
+                if from < to && has_room(asked, class, seat) && !each(&Column { class: index, seat, hub, bore: [from, to] }) {
                     return false;
                 }
             }
@@ -125,17 +124,26 @@ pub(super) fn walk(
     (springs, whole)
 }
 
+/// Whether a spring has room whatever the ring: in the envelope, and in a chassis whose diameter is given.
+fn has_room(asked: &Asked, class: &Class, seat: &Seat) -> bool {
+    let wall_m = wall_m(asked, class.module);
+    let is_walled = asked.template.making.chassis_m.is_none_or(|chassis_m| chassis_m >= seat.bore_m + 2.0 * wall_m);
+    is_walled && outer_m(0.0, seat.bore_m, wall_m, asked.template.making.chassis_m) <= asked.envelope_m[0]
+}
+
 /// Length with these turns on the hub and in the bore, m.
 pub(super) fn long_m(asked: &Asked, class: &Class, seat: &Seat, [hub, bore]: [usize; 2]) -> f64 {
     let turns = asked.hub_turns[hub] + asked.free_turns + asked.bore_turns[bore];
-    length_m(face_m(asked, class.module), turns, seat.wire_m)
+    length_m([face_m(asked, class.module), plate_m(asked, class.module)], turns, seat.wire_m)
 }
 
 /// Gear sets of a class that run and have room, and how many more run.
 pub(super) fn running(asked: &Asked, book: &Book, class: &Class) -> (Vec<Sound>, usize) {
     let mut all: Vec<Sound> = class.sets.iter().filter_map(|set| book.sound(asked, *set)).collect();
     let run = all.len();
-    all.retain(|sound| sound.ring_m <= asked.envelope_m[0]);
+    all.retain(|sound| {
+        outer_m(sound.ring_root_m, 0.0, wall_m(asked, class.module), asked.template.making.chassis_m) <= asked.envelope_m[0]
+    });
     let large = run - all.len();
     (all, large)
 }
@@ -249,7 +257,7 @@ impl Search<'_> {
         let needed_nm = class.needed_nm;
         let friction = seat.friction_left(needed_nm, hub_exponents[column.hub], bore_exponents[bore]);
         let gap_m = seat.gap_left_m(needed_nm, slip[0][column.hub], grip);
-        let outer_m = outer_m(self.found.sets[set].ring_root_m, seat.bore_m, wall_m(asked, class.module));
+        let outer_m = outer_m(self.found.sets[set].ring_root_m, seat.bore_m, wall_m(asked, class.module), asked.template.making.chassis_m);
         let length_m = long_m(asked, class, seat, [column.hub, bore]);
         [envelope_m3([outer_m, length_m]), -output_nm, -class.ratio * output_nm / asked.input_nm, friction, -gap_m]
     }
@@ -316,7 +324,7 @@ pub(super) fn built(asked: &Asked, sound: &Sound, place: [u16; 6]) -> Built {
 /// Its design, as its file will have it.
 pub(super) fn designed(asked: &Asked, sound: &Sound, place: [u16; 6]) -> Design {
     let built = built(asked, sound, place);
-    let mut design = design(asked, &built, built.gears, sound.set.module);
+    let mut design = design(asked, &built, built.gears);
     let wire = usize::from(place[0]);
     if let Some(scatter) = asked.scatter(&built, wire) {
         design.scatter = scatter;

@@ -60,7 +60,7 @@ pub(crate) struct Tolerances {
     pub bore: Slot<String>,
 }
 
-/// Room for gears and clutch.
+/// Room for gears, clutch and chassis.
 #[derive(Debug, Default)]
 pub(crate) struct Envelope {
     pub diameter: Slot<Quantity>,
@@ -87,7 +87,7 @@ impl Describe for Synthesise {
         self.tolerances.describe(v, &Param::new("tolerances", doc));
         let doc = "Largest bending stress of the wire; the 0.7 of its tensile strength hold besides.";
         v.quantity(&Param::new("stress_max", doc).of(Dimension::Stress).above(0.0, 1e13), &mut self.stress_max);
-        self.envelope.describe(v, &Param::new("envelope", "Room for gears and clutch; without a side any."));
+        self.envelope.describe(v, &Param::new("envelope", "Room for gears, clutch and chassis; without a side any."));
     }
 }
 

@@ -47,6 +47,7 @@ pub(super) fn look(stroke: Stroke) -> (Paint, f64, &'static str, bool) {
         Stroke::Main => (Paint::Main, 2.6, "", false),
         Stroke::Second => (Paint::Second, 1.8, "", true),
         Stroke::Third => (Paint::Third, 2.2, "11 4 2.5 4", false),
+        Stroke::Fourth => (Paint::Third, 2.2, "2.2 4", false),
         Stroke::Reference => (Paint::Reference, 1.8, "6 4", false),
         Stroke::Limit => (Paint::Limit, 2.0, "10 5", false),
         Stroke::Area => (Paint::Reference, 0.0, "", false),
@@ -171,6 +172,7 @@ struct SpanLabel {
     text: String,
     text_rect: Rect,
     row: usize,
+    hatched: bool,
 }
 
 fn span_rows(plot: &Plot, x: &Ticks, left: f64, right: f64) -> Vec<SpanLabel> {
@@ -186,7 +188,7 @@ fn span_rows(plot: &Plot, x: &Ticks, left: f64, right: f64) -> Vec<SpanLabel> {
         // As many rows as spans are always enough.
         let row =
             (0..plot.spans.len()).find(|r| !out.iter().any(|o| o.row == *r && o.text_rect.overlaps(&text_rect.grown(6.0)))).unwrap_or(0);
-        out.push(SpanLabel { x0, x1, text, text_rect, row });
+        out.push(SpanLabel { x0, x1, text, text_rect, row, hatched: span.hatched });
     }
     out
 }
@@ -197,6 +199,11 @@ fn grounds(canvas: &mut Canvas, frame: &Frame, spans: &[SpanLabel]) {
     for s in spans {
         let r = Rect { x0: s.x0, y0: area.y0, x1: s.x1, y1: area.y1 };
         canvas.rect(&r, &format!(r#"{} fill-opacity="0.10""#, Paint::Span.attributes("fill")));
+        if s.hatched {
+            canvas.open_stroke(Paint::Span, 1.0, "");
+            canvas.hatch(&r, 8.0, r#"stroke-opacity="0.5""#);
+            canvas.close();
+        }
         let y = area.y0 - 5.0 - s.row as f64 * SPAN_ROW;
         canvas.open_stroke(Paint::Span, 1.4, "");
         canvas.segments(&[[[s.x0, y], [s.x1, y]], [[s.x0, y - 4.0], [s.x0, area.y0]], [[s.x1, y - 4.0], [s.x1, area.y0]]], "");

@@ -180,7 +180,7 @@ fn paint(canvas: &mut Canvas, item: &Item, view: &View, symbol: f64, placer: &mu
             let at: Vec<[f64; 2]> = points.iter().filter_map(|p| view.at(*p)).collect();
             let width = view.thickness(*width_m);
             match role {
-                Role::Undeformed | Role::Named(Look::Plate | Look::Moving | Look::Rail | Look::Wire | Look::Limit, _) => {
+                Role::Undeformed | Role::Named(Look::Plate | Look::Opening | Look::Moving | Look::Rail | Look::Wire | Look::Limit, _) => {
                     placer.add_line(&at, 1.5, 0.6);
                 }
                 Role::Deformed | Role::DeformedCopy | Role::Rigid | Role::RigidCopy | Role::Named(Look::Bar, _) => {
@@ -263,6 +263,7 @@ fn disc(canvas: &mut Canvas, placer: &mut Placer, at: [f64; 2], radius: f64, rol
 fn filled(look: Look) -> String {
     match look {
         Look::Plate => format!(r#"{} stroke-width="1.4" stroke-linejoin="round""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)),
+        Look::Opening => format!(r#"{} stroke-width="1.4" stroke-linejoin="round""#, Paint::fill_and_stroke(Paint::Paper, Paint::Ink)),
         Look::Moving => format!(r#"{} stroke-width="2" stroke-linejoin="round""#, Paint::fill_and_stroke(Paint::Paper, Paint::Main)),
         Look::Bar => format!(r#"{} stroke-width="0.8""#, Paint::fill_and_stroke(Paint::Body, Paint::Ink)),
         Look::Rail | Look::Axis | Look::Track | Look::Wire | Look::Comb | Look::Limit => format!(r#"fill="none" {}"#, stroked(look)),
@@ -272,7 +273,7 @@ fn filled(look: Look) -> String {
 /// Paint, width and dashes of a named line.
 fn line_of(look: Look) -> (Paint, f64, &'static str) {
     match look {
-        Look::Plate | Look::Bar => (Paint::Ink, 1.4, ""),
+        Look::Plate | Look::Opening | Look::Bar => (Paint::Ink, 1.4, ""),
         Look::Moving => (Paint::Main, 2.0, ""),
         Look::Rail => (Paint::Muted, 1.4, ""),
         Look::Axis => (Paint::Muted, 1.0, "14 4 2 4"),
@@ -563,7 +564,7 @@ fn named(items: &[Item]) -> Vec<Entry> {
             Look::Plate => Swatch::Plate,
             Look::Bar => Swatch::Body,
             Look::Moving => Swatch::Moving,
-            Look::Rail | Look::Axis | Look::Track | Look::Wire | Look::Comb | Look::Limit => {
+            Look::Opening | Look::Rail | Look::Axis | Look::Track | Look::Wire | Look::Comb | Look::Limit => {
                 Swatch::Line { paint, width, dash, squares: false }
             }
         }
