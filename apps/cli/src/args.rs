@@ -17,10 +17,12 @@ pub(crate) fn command() -> Command {
         .subcommand(solve())
         .subcommand(synthesise())
         .subcommand(optimise())
+        .subcommand(pareto())
         .subcommand(sweep())
         .subcommand(merge())
         .subcommand(tolerance())
         .subcommand(compare())
+        .subcommand(calibrate())
         .subcommand(export())
         .subcommand(reproduce())
         .subcommand(explain())
@@ -179,6 +181,31 @@ fn compare() -> Command {
         .after_help(COMPARE_HELP)
 }
 
+const PARETO_HELP: &str = "\
+The section [pareto] of the file names two or three metrics as goals, and what may change: ranges, ranges in steps, whole numbers, and values or
+words of a list. Every design is analysed in full; all its requirements and checks are kept. The same seed gives the same result.
+
+Writes FILE-pareto-001.toml, … (comments kept; at most 24, spread over the front), front.csv with every design of the front, report.html, in
+which each point leads to its design and its file, and result.json. If nothing keeps every limit: the nearest design.
+
+Ctrl-C ends the search and keeps the front so far.
+
+Exit codes: 0 designs keep every limit, 1 none does (the nearest is written), 2 error in the file or the call, 3 no design could be computed, 4 input/output, 130 interrupted, front kept.";
+
+fn pareto() -> Command {
+    let number = |name: &'static str, help: &'static str| Arg::new(name).long(name).value_name("N").help(help);
+    let up_to = |least: i64| clap::value_parser!(u32).range(least..=10_000);
+    let command = Command::new("pareto")
+        .about("Search for designs of which none is better in every goal: project files to choose from")
+        .arg(file().help("Project file with a section [pareto]"))
+        .arg(out("Write the project files, front.csv, report.html and result.json into this folder").required(true))
+        .arg(number("population", "Designs of a generation, instead of `population` of the file").value_parser(up_to(4)))
+        .arg(number("generations", "Generations, instead of `generations` of the file").value_parser(up_to(0)))
+        .arg(number("seed", "Seed of the random numbers, instead of `seed` of the file").value_parser(clap::value_parser!(u32)))
+        .arg(json());
+    choices(command).after_help(PARETO_HELP)
+}
+
 const EXPORT_HELP: &str = "\
 Formats: dxf (closed polylines with arcs, for cutting), svg (true size), step (solid), stl and 3mf (meshes), inp (plane finite elements for
 CalculiX and Abaqus: quadratic triangles of plane stress between the pads, held and moved as the project says). Lengths are in millimetres.
@@ -305,6 +332,26 @@ fn tolerance() -> Command {
     choices(command).after_help(
         "Exit codes: 0 target yield met, 1 missed, 2 error in the file or the call, 3 the nominal design has no curve, 4 input/output, 130 interrupted.",
     )
+}
+
+const CALIBRATE_HELP: &str = "\
+[measurements.NAME] of the file names a CSV file and its columns; [calibrate] says which numbers are looked for, such as
+parameters = { \"material.young_modulus\" = { range = [\"1 GPa\", \"4 GPa\"] }, \"bench.offset\" = {} }.
+
+Writes calibrated.toml (the file, comments kept, with a variant `calibrated` that has the estimates; with --variant NAME they go into that
+one), report.html and result.json.
+
+Ctrl-C ends the search, or what is left of the intervals, and keeps the best parameters so far.
+
+Exit codes: 0 all is determined and explained, 1 something is not, 2 error in the file or the call, 3 the design has no curve or the search did not come to its end, 4 input/output, 130 interrupted, best kept.";
+
+fn calibrate() -> Command {
+    let command = Command::new("calibrate")
+        .about("Fit numbers of the design to a measured curve: values with intervals, what is not determined, what is not explained")
+        .arg(file().help("Project file with sections [measurements] and [calibrate]"))
+        .arg(out("Write calibrated.toml, report.html and result.json into this folder"))
+        .arg(json());
+    choices(command).after_help(CALIBRATE_HELP)
 }
 
 fn reproduce() -> Command {

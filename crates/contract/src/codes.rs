@@ -165,8 +165,18 @@ pub const CODES: &[Explanation] = &[
         "ISO 286 fits such as `h7` are deviations of diameters of shafts and holes. The parameter is another length, for which a fit would be a guess. Write the half width: `17.6 mm ± 0.009 mm`.",
     ),
     code(
+        "E0920",
+        "goals of a trade-off",
+        "`[pareto]` has two or three goals: metrics of the family, as in `requirements.limits`, each named once, in `minimise` or in `maximise`:\n\n    [pareto]\n    maximise = [\"stiffness_tangent_output\"]\n    minimise = [\"shaft_load\"]\n\nWith one goal, `forcewright optimise` finds more with less work. A design whose analysis does not give one of them (an efficiency without friction) has no values, and every other design beats it.",
+    ),
+    code(
+        "E0921",
+        "values of a trade-off",
+        "`[pareto.vary]` says for each path which values it may have:\n\n    \"design.input_diameter\" = { range = [\"10 mm\", \"20 mm\"] }                     # any\n    \"design.output_diameter\" = { range = [\"80 mm\", \"160 mm\"], step = \"5 mm\" }   # in steps\n    \"design.gears.sun\" = { range = [12, 24] }                                   # whole numbers\n    \"design.cables.1.use\" = { among = [\"steel 7x7 0.54 mm\", \"steel 7x19 1 mm\"] }\n\nPaths are those of `--set`, without patterns; they name keys of `[design]` or of another section that says what is built, never `mechanism`, `requirements`, or the sections of studies.",
+    ),
+    code(
         "W0101",
         "a section is not used",
-        "The section belongs to a study (such as `[calibrate]`) that this version does not have. It does not change the result of `solve`.",
+        "The section is part of the language, but this family does not use it (such as `[environment]` of compliant mechanisms). It does not change any result.",
     ),
 ];

@@ -151,6 +151,37 @@ pub fn named_rows<const N: usize>(
     most: usize,
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<[Cell; N]>> {
+    named_rows_with(file, columns, most, Decimal::Point, diagnostics)
+}
+
+/// How numbers of a table are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decimal {
+    /// `12.5`
+    Point,
+    /// `12,5`, with columns separated by semicolons.
+    Comma,
+}
+
+impl Decimal {
+    fn parse(self, text: &str, unit: &Unit) -> Result<Quantity, QuantityError> {
+        match self {
+            Self::Point => Quantity::parse_in(text, unit),
+            // A point would be one between thousands, which a reader may take for the other.
+            Self::Comma if text.contains('.') => Err(QuantityError::NotANumber),
+            Self::Comma => Quantity::parse_in(&text.replace(',', "."), unit),
+        }
+    }
+}
+
+/// [`named_rows`] of a file whose numbers may have decimal commas.
+pub fn named_rows_with<const N: usize>(
+    file: &DataFile,
+    columns: &[Named<'_>; N],
+    most: usize,
+    decimal: Decimal,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<[Cell; N]>> {
     let content = file.content.as_ref().ok()?;
     let mut lines = lines(content);
     let Some((place, header)) = lines.next() else {
@@ -160,6 +191,11 @@ pub fn named_rows<const N: usize>(
         return None;
     };
     let separator = if header.contains(';') { ';' } else { ',' };
+    if decimal == Decimal::Comma && separator == ',' {
+        let help = "separate the columns by `;`, in the header too, or write decimal points without `decimal = \"comma\"`";
+        diagnostics.push(broken(place, "decimal commas between columns that commas separate", "this header", help));
+        return None;
+    }
     let names = cells(header, place, separator);
     let before = diagnostics.errors();
     let found: Vec<(usize, Unit)> = columns.iter().filter_map(|c| find(c, &names, place, diagnostics)).collect();
@@ -182,7 +218,7 @@ pub fn named_rows<const N: usize>(
         let mut row = [Cell { si: 0.0, span: place }; N];
         for (cell, (index, unit)) in row.iter_mut().zip(&found) {
             let (span, text) = values[*index];
-            match Quantity::parse_in(text, unit) {
+            match decimal.parse(text, unit) {
                 Ok(quantity) => *cell = Cell { si: quantity.si, span },
                 Err(error) => diagnostics.push(number_error(&error, text, span)),
             }

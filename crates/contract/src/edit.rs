@@ -2,7 +2,7 @@
 
 mod settings;
 
-pub use settings::{with_base_from, with_settings};
+pub use settings::{with_base_from, with_settings, with_text_at};
 
 use forcewright_base::diagnostics::SourceId;
 use forcewright_base::units::{Tolerance, format_si};
@@ -52,6 +52,21 @@ pub fn with_values(text: &str, numbers: &[Number], changed: &[(usize, f64)], var
         let create = number.span.source != SourceId::default();
         let path: Vec<&str> = ["variants", variant].into_iter().chain(change.key_path()).collect();
         change.set(document.as_table_mut(), &path, create)?;
+    }
+    Ok(document.to_string())
+}
+
+/// The text with a variant in which the numbers are at their new values, SI: a new one, or one that it has. The rest stays as it is.
+///
+/// # Errors
+/// [`EditError`] names what is in the way.
+pub fn with_variant(text: &str, numbers: &[Number], changed: &[(usize, f64)], variant: &str) -> Result<String, EditError> {
+    let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| EditError::NotToml(e.message().to_owned()))?;
+    for (index, si) in changed {
+        let Some(number) = numbers.get(*index) else { continue };
+        let change = Change { numbers, changed, number, si: *si };
+        let path: Vec<&str> = ["variants", variant].into_iter().chain(change.key_path()).collect();
+        change.set(document.as_table_mut(), &path, true)?;
     }
     Ok(document.to_string())
 }

@@ -1,6 +1,7 @@
 //! The contract between mechanism families and everything else. Layer 2: the project file (tree, merging, reading, schema) and the
 //! traits that a family implements.
 
+pub mod calibration;
 pub mod catalogue;
 pub mod codes;
 #[cfg(feature = "conformance")]

@@ -348,6 +348,12 @@ pub fn deferred_quantities(slot: &Located<Value>, dimension: Dimension, diagnost
     Some(found)
 }
 
+/// A single value that was kept until its quantity was known, with its tolerance. `None` after an error, which is reported.
+pub fn deferred_quantity(slot: &Located<Value>, dimension: Dimension, diagnostics: &mut Diagnostics) -> Option<Quantity> {
+    let param = Param::new("value", "").of(dimension);
+    quantity_of(&param, &Item { span: slot.span, value: slot.value.clone() }).map_err(|diagnostic| diagnostics.push(*diagnostic)).ok()
+}
+
 /// A file of data that is not there, or no text.
 fn unreadable(error: &FileError, file: &DataFile, span: Span) -> Diagnostic {
     let (code, message) = error.refusal(&shorten(&file.path));

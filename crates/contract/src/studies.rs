@@ -1,9 +1,10 @@
-//! The sections that studies read, the same for every family: `[optimise]` and `[tolerance]`.
+//! The sections that studies read, the same for every family: `[optimise]`, `[pareto]`, `[tolerance]`, `[measurements]` and `[calibrate]`.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
 use forcewright_base::text::closest;
 use forcewright_base::units::Quantity;
 
+use crate::calibration::{Calibrate, Measurements};
 use crate::data::DataFile;
 use crate::describe::{Describe, Form, Located, Member, Param, Section, Slot, Visitor, Word};
 use crate::numbers::{Number, matches};
@@ -17,6 +18,42 @@ pub struct Studies {
     pub optimise: Section<Optimise>,
     /// `[tolerance]`
     pub tolerance: Section<Tolerance>,
+    /// `[measurements]`
+    pub measurements: Section<Measurements>,
+    /// `[calibrate]`
+    pub calibrate: Section<Calibrate>,
+    /// `[pareto]`
+    pub pareto: Section<Pareto>,
+}
+
+/// A search for the designs of which none is better in every goal.
+#[derive(Clone, Debug, Default)]
+pub struct Pareto {
+    /// Metrics that are made small.
+    pub minimise: Slot<Vec<Located<String>>>,
+    /// Metrics that are made large.
+    pub maximise: Slot<Vec<Located<String>>>,
+    /// What may change, by its path as for `--set`.
+    pub vary: Vec<Member<Varied>>,
+    /// Which checks a design must keep.
+    pub checks: Slot<&'static str>,
+    /// Designs of a generation.
+    pub population: Slot<u32>,
+    /// Generations after the first.
+    pub generations: Slot<u32>,
+    /// Seed of the random numbers.
+    pub seed: Slot<u32>,
+}
+
+/// The values that something may have.
+#[derive(Clone, Debug, Default)]
+pub struct Varied {
+    /// From the first to the second value.
+    pub range: Slot<Value>,
+    /// In steps of this from the first on.
+    pub step: Slot<Value>,
+    /// One of these.
+    pub among: Slot<Value>,
 }
 
 /// A search for a better design.
@@ -60,6 +97,10 @@ pub struct Freedom {
     pub range: Slot<Value>,
     /// At most this far from the value in the file.
     pub within: Slot<Value>,
+    /// What can be had: in such steps from the smallest value on.
+    pub step: Slot<Value>,
+    /// What can be had: one of these.
+    pub among: Slot<Value>,
 }
 
 /// The scatter of making.
@@ -104,6 +145,12 @@ pub const DISTRIBUTIONS: &[Word] = &[
     Word { word: "triangular", doc: "from the ends to the middle" },
 ];
 
+/// Which checks the designs of a trade-off must keep.
+pub const KEPT: &[Word] = &[
+    Word { word: "all", doc: "the requirements of the file, and every check that the family makes by itself" },
+    Word { word: "required", doc: "the requirements of the file" },
+];
+
 /// What a design is kept against.
 pub const ROBUST: &[Word] = &[
     Word { word: "no", doc: "the design as it is meant" },
@@ -123,26 +170,74 @@ pub enum Purpose {
 /// Most starts and most samples.
 const MOST_STARTS: f64 = 1e5;
 const MOST_SAMPLES: f64 = 1e8;
+/// Most goals, and largest populations and most generations of a trade-off.
+const MOST_GOALS: usize = 3;
+const MOST_PEOPLE: f64 = 1e4;
 /// How near a freedom comes to a smallest value that is excluded, as part of the distance of the present value.
 const LEAST_PART: f64 = 1e-3;
 
 impl Studies {
     /// Whether a path lies in one of these sections.
     pub fn hold(path: &str) -> bool {
-        path.starts_with("optimise.") || path.starts_with("tolerance.")
+        matches!(path.split_once('.'), Some(("optimise" | "pareto" | "tolerance" | "measurements" | "calibrate", _)))
     }
 
     /// Whether a path lies in one of these sections that the file does not have: its defaults mean nothing.
     pub fn lack(&self, path: &str) -> bool {
-        let absent = if path.starts_with("optimise.") { self.optimise.present.is_none() } else { self.tolerance.present.is_none() };
-        Self::hold(path) && absent
+        let present = match path.split_once('.') {
+            Some(("optimise", _)) => &self.optimise.present,
+            Some(("pareto", _)) => &self.pareto.present,
+            Some(("tolerance", _)) => &self.tolerance.present,
+            Some(("measurements", _)) => &self.measurements.present,
+            Some(("calibrate", _)) => &self.calibrate.present,
+            _ => return false,
+        };
+        present.is_none()
+    }
+
+    /// Shows the sections, with what a family measures otherwise among the tables of `[measurements]`.
+    pub fn describe_with(&mut self, v: &mut dyn Visitor, own: &mut dyn FnMut(&mut dyn Visitor)) {
+        self.optimise.describe(v, &Param::new("optimise", "A search for a better design: `forcewright optimise`."));
+        self.tolerance.describe(v, &Param::new("tolerance", "The scatter of making: `forcewright tolerance`."));
+        self.pareto.describe(v, &Param::new("pareto", "Several goals at once: `forcewright pareto`."));
+        let Section { present, body } = &mut self.measurements;
+        v.section(&Param::new("measurements", "Curves that were measured: `forcewright calibrate`."), present, &mut |v| {
+            own(v);
+            body.describe(v);
+        });
+        self.calibrate.describe(v, &Param::new("calibrate", "Parameters from a measured curve: `forcewright calibrate`."));
     }
 }
 
 impl Describe for Studies {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        self.optimise.describe(v, &Param::new("optimise", "A search for a better design: `forcewright optimise`."));
-        self.tolerance.describe(v, &Param::new("tolerance", "The scatter of making: `forcewright tolerance`."));
+        self.describe_with(v, &mut |_| {});
+    }
+}
+
+impl Describe for Pareto {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        v.names(&Param::new("minimise", "Metrics that are made small."), 0, MOST_GOALS, &mut self.minimise);
+        let doc = "Metrics that are made large. Two goals in all, or three.";
+        v.names(&Param::new("maximise", doc), 0, MOST_GOALS, &mut self.maximise);
+        v.members(
+            &Param::new("vary", "What may change: a path as for `--set`, with its values; `\"design.cables.1.use\"`.").required(),
+            Form::Table,
+            &mut self.vary,
+        );
+        v.choice(&Param::new("checks", "Which checks every design of the front must keep.").default("all"), KEPT, &mut self.checks);
+        v.count(&Param::new("population", "Designs of a generation.").within(4.0, MOST_PEOPLE).default("40"), &mut self.population);
+        v.count(&Param::new("generations", "Generations after the first.").within(0.0, MOST_PEOPLE).default("40"), &mut self.generations);
+        v.count(&Param::new("seed", "Seed of the random numbers.").default("1"), &mut self.seed);
+    }
+}
+
+impl Describe for Varied {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let doc = "Smallest and largest value, `[\"8 mm\", \"12 mm\"]`; of what is counted, whole numbers, `[12, 30]`.";
+        v.deferred(&Param::new("range", doc), &mut self.range);
+        v.deferred(&Param::new("step", "With `range`: only values in such steps from the smallest on."), &mut self.step);
+        v.deferred(&Param::new("among", "One of some values or words, `[\"0.8 mm\", \"1 mm\"]`."), &mut self.among);
     }
 }
 
@@ -198,6 +293,10 @@ impl Describe for Freedom {
             &mut self.range,
         );
         v.deferred(&Param::new("within", "Largest distance from the value in the file."), &mut self.within);
+        let doc = "With `range`: what can be had comes in such steps from the smallest value on; the optimum is rounded to it.";
+        v.deferred(&Param::new("step", doc), &mut self.step);
+        let doc = "In place of `range`: what can be had is one of these, `[\"0.8 mm\", \"1 mm\"]`; the optimum is rounded to it.";
+        v.deferred(&Param::new("among", doc), &mut self.among);
     }
 }
 
@@ -265,6 +364,104 @@ impl Optimise {
     }
 }
 
+/// A number that can only be had in some sizes.
+#[derive(Clone, Debug)]
+pub struct Sized {
+    /// Its path.
+    pub path: String,
+    sizes: Sizes,
+}
+
+#[derive(Clone, Debug)]
+enum Sizes {
+    /// From a smallest value in steps to a largest, SI.
+    Steps { from: f64, step: f64, to: f64 },
+    /// These, ascending, SI.
+    List(Vec<f64>),
+}
+
+/// Part of a step by which a range may miss a whole number of them, and a value a size.
+const SAME_SIZE: f64 = 1e-6;
+/// Part of a range below which a step is none.
+const LEAST_STEP: f64 = 1e-6;
+
+impl Sized {
+    /// The sizes next to a value, SI: the largest that is not above and the smallest that is not below; one where they are the same, or
+    /// where it lies beyond all.
+    pub fn around(&self, si: f64) -> Vec<f64> {
+        let (below, above) = match &self.sizes {
+            Sizes::Steps { from, step, to } => {
+                let last = ((to - from) / step + SAME_SIZE).floor();
+                let place = ((si - from) / step).clamp(0.0, last);
+                let rest = place - place.floor();
+                let [low, high] = if (SAME_SIZE..=1.0 - SAME_SIZE).contains(&rest) {
+                    [place.floor(), place.ceil().min(last)]
+                } else {
+                    [place.round(); 2]
+                };
+                (from + low * step, from + high * step)
+            }
+            Sizes::List(sizes) => {
+                let (first, last) = (sizes.first().copied().unwrap_or(si), sizes.last().copied().unwrap_or(si));
+                let near = |size: f64| (size - si).abs() <= SAME_SIZE * (last - first);
+                let below = sizes.iter().copied().filter(|s| *s <= si || near(*s)).fold(first, f64::max);
+                let above = sizes.iter().copied().filter(|s| *s >= si || near(*s)).fold(last, f64::min);
+                if near(below) {
+                    (below, below)
+                } else if near(above) {
+                    (above, above)
+                } else {
+                    (below, above)
+                }
+            }
+        };
+        if above > below { vec![below, above] } else { vec![below] }
+    }
+}
+
+impl Optimise {
+    /// The numbers that may change in sizes only, in the order of the design.
+    pub fn sized(&self, numbers: &[Number], diagnostics: &mut Diagnostics) -> Vec<Sized> {
+        let mut found: Vec<Option<Sized>> = vec![None; numbers.len()];
+        for member in &self.variables {
+            for index in chosen(&member.name, &["design"], numbers, diagnostics) {
+                // As with ranges, the later pattern wins.
+                found[index] =
+                    sizes(&member.value, &numbers[index], diagnostics).map(|sizes| Sized { path: numbers[index].path.clone(), sizes });
+            }
+        }
+        found.into_iter().flatten().collect()
+    }
+}
+
+fn sizes(freedom: &Freedom, number: &Number, diagnostics: &mut Diagnostics) -> Option<Sizes> {
+    if let Some(among) = &freedom.among {
+        let mut all = deferred_quantities(among, number.dimension, diagnostics)?;
+        all.sort_by(f64::total_cmp);
+        return Some(Sizes::List(all));
+    }
+    let step = freedom.step.as_ref()?;
+    let mut refuse = |message: &str| {
+        let help = "write it as `range = [\"0.8 mm\", \"1.2 mm\"], step = \"0.1 mm\"`";
+        diagnostics.push(Diagnostic::error("E0204", step.span, message).label("this step").help(help));
+    };
+    let Some(range) = &freedom.range else {
+        refuse("a step belongs to a `range`");
+        return None;
+    };
+    let mut unsaid = Diagnostics::default();
+    // What is wrong with the range is said where it is read.
+    let ends = deferred_quantities(range, number.dimension, &mut unsaid)?;
+    let [from, to] = ends[..] else { return None };
+    match deferred_quantities(step, number.dimension, &mut unsaid).as_deref() {
+        Some([step]) if *step > LEAST_STEP * (to - from) && *step <= to - from => Some(Sizes::Steps { from, step: *step, to }),
+        _ => {
+            refuse("a step is one positive value of the quantity of its range, at most as long, and more than a millionth of it");
+            None
+        }
+    }
+}
+
 /// The numbers that a pattern means; an error if it means none.
 pub fn chosen(pattern: &Located<String>, roots: &[&str], numbers: &[Number], diagnostics: &mut Diagnostics) -> Vec<usize> {
     let eligible = |n: &Number| n.path.split('.').next().is_some_and(|root| roots.contains(&root));
@@ -292,8 +489,8 @@ pub fn chosen(pattern: &Located<String>, roots: &[&str], numbers: &[Number], dia
 }
 
 fn freedom(freedom: &Freedom, number: &Number, place: Span, diagnostics: &mut Diagnostics) -> Option<Free> {
-    let (lower, upper) = match (&freedom.range, &freedom.within) {
-        (Some(range), None) => match deferred_quantities(range, number.dimension, diagnostics)?[..] {
+    let (lower, upper) = match (&freedom.range, &freedom.within, &freedom.among) {
+        (Some(range), None, None) => match deferred_quantities(range, number.dimension, diagnostics)?[..] {
             [low, high] if low < high => (low, high),
             _ => {
                 diagnostics.push(
@@ -303,7 +500,7 @@ fn freedom(freedom: &Freedom, number: &Number, place: Span, diagnostics: &mut Di
                 return None;
             }
         },
-        (None, Some(within)) => match deferred_quantities(within, number.dimension, diagnostics)?[..] {
+        (None, Some(within), None) => match deferred_quantities(within, number.dimension, diagnostics)?[..] {
             [width] if width > 0.0 => (number.si - width, number.si + width),
             _ => {
                 diagnostics.push(
@@ -312,11 +509,23 @@ fn freedom(freedom: &Freedom, number: &Number, place: Span, diagnostics: &mut Di
                 return None;
             }
         },
+        (None, None, Some(among)) => {
+            let sizes = deferred_quantities(among, number.dimension, diagnostics)?;
+            let ends = (sizes.iter().copied().fold(f64::INFINITY, f64::min), sizes.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+            if sizes.len() < 2 || ends.0 >= ends.1 {
+                diagnostics.push(
+                    Diagnostic::error("E0204", among.span, "there is nothing to choose from")
+                        .help("write two values or more, `among = [\"0.8 mm\", \"1 mm\"]`"),
+                );
+                return None;
+            }
+            ends
+        }
         _ => {
             diagnostics.push(
                 Diagnostic::error("E0302", place, "how far may it change?")
                     .label("this variable")
-                    .help("give either `range = [\"low\", \"high\"]` or `within = \"5 mm\"`"),
+                    .help("give either `range = [\"low\", \"high\"]`, `within = \"5 mm\"` or `among = [\"0.8 mm\", \"1 mm\"]`"),
             );
             return None;
         }

@@ -37,6 +37,7 @@ pub const EXAMPLES: &[Example] = examples![
     "compliant/optimise-lan-box",
     "compliant/optimise-lan-equal-forces",
     "compliant/tolerance-lan-thin",
+    "compliant/calibrate-lan-solid",
     "cam/sanchez-2-springs",
     "cam/sanchez-4-springs",
     "cam/sanchez-6-springs",
@@ -48,15 +49,20 @@ pub const EXAMPLES: &[Example] = examples![
     "cam/bench-press",
     "cam/weight-release",
     "cam/torque-cam",
+    "cam/calibrate-sanchez",
     "capstan/longval",
     "capstan/haptic-handle",
     "capstan/quadruped-leg",
     "capstan/pointing-stage",
+    "capstan/calibrate-longval",
+    "capstan/pareto-handle",
     "lavt/butin-1",
     "lavt/butin-2",
     "lavt/butin-3",
     "lavt/bench",
     "lavt/prosthetic-hand",
+    "lavt/calibrate-butin-2",
+    "lavt/pareto-gears",
 ];
 
 macro_rules! data {
@@ -66,8 +72,12 @@ macro_rules! data {
 }
 
 /// Tables of data that examples name: file names and texts.
-const DATA: &[&[(&str, &str)]] =
-    &[data!["compliant": "cam-5mm.csv", "cam-3mm.csv"], data!["cam": "measured-cam.csv"], data!["lavt": "bench.csv"]];
+const DATA: &[&[(&str, &str)]] = &[
+    data!["compliant": "cam-5mm.csv", "cam-3mm.csv", "lan-solid.csv"],
+    data!["cam": "measured-cam.csv", "loop.csv"],
+    data!["capstan": "stiffness.csv"],
+    data!["lavt": "bench.csv", "butin-2-lines.csv"],
+];
 
 /// An example by its name, with or without its family.
 pub fn find(name: &str) -> Option<&'static Example> {

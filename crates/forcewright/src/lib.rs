@@ -15,12 +15,14 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod calibrate;
 mod compare;
 mod export;
 mod front;
 pub mod gallery;
 mod load;
 mod optimise;
+mod pareto;
 pub mod sweep;
 mod synthesise;
 mod tolerance;
@@ -38,12 +40,14 @@ pub use forcewright_model as model;
 pub use forcewright_report as report;
 pub use forcewright_study as study;
 
+pub use calibrate::{Calibrated, NoCalibration};
 pub use compare::{Compared, Comparison, MeasureRow, compare};
 pub use export::Exported;
 pub use forcewright_contract::project::{Choices, DiskFiles, FileError, Files};
 pub use front::{Front, FrontPoint, FrontProgress, FrontTask, Origin};
 pub use load::{Loaded, Refused};
-pub use optimise::{Optimised, Robust, Robustness, Wording};
+pub use optimise::{Optimised, Robust, Robustness, Rounded, Wording};
+pub use pareto::{Choice as ParetoChoice, Goal as ParetoGoal, Pareto, ParetoDesign, ParetoProgress, ParetoTask};
 pub use synthesise::{Designed, Stage, SynthesisProgress, SynthesisTask, Synthesised, Way};
 pub use tolerance::{NoTolerance, ToleranceChoices, Toleranced};
 
@@ -69,9 +73,13 @@ pub fn family(id: &str) -> Option<&'static dyn Family> {
 
 /// The long story of every code, in order.
 pub fn explanations() -> impl Iterator<Item = &'static Explanation> {
+    let calibrations = forcewright_contract::calibration::CODES;
     let studies = forcewright_contract::scatter::CODES
         .iter()
+        .chain(optimise::sizes::CODES)
         .chain(tolerance::CODES)
+        .chain(calibrations)
+        .chain(calibrate::CODES)
         .chain(synthesise::CODES)
         .chain(export::CODES)
         .chain(compare::CODES);

@@ -94,6 +94,13 @@ impl Loaded {
         }
     }
 
+    /// The project as refused for what was found later.
+    pub(crate) fn refused(&self, diagnostics: Diagnostics) -> Refused {
+        // A file of data that is not there is as one that `extends` names.
+        let file_missing = diagnostics.in_file_order().iter().any(|d| d.code == "E0101" || d.code == "E0104");
+        Refused { diagnostics, sources: self.project.sources.clone(), file_missing }
+    }
+
     /// Analyses the project. `input_name` is the file as the user named it, `command` the command that repeats this run.
     pub fn solve(&self, input_name: &str, command: &str, progress: Progress<'_>) -> Report {
         let mut analysis = self.understood.analyse(progress);

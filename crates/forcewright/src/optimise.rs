@@ -3,9 +3,11 @@
 pub(crate) mod document;
 mod pages;
 mod robust;
+pub(crate) mod sizes;
 mod wording;
 
 pub use robust::{Robust, Robustness};
+pub use sizes::Rounded;
 pub use wording::Wording;
 
 use std::ops::Range;
@@ -81,6 +83,8 @@ pub struct Optimised {
     pub tightened: Vec<(String, f64, &'static str)>,
     /// What the scatter of making does, if limits are kept against it.
     pub robustness: Option<Robustness>,
+    /// What rounding to sizes did, if numbers can only be had in some.
+    pub rounded: Option<Rounded>,
     /// The project file with the numbers of the best run and the settings of the command line, comments kept.
     pub text: Option<String>,
     /// The design of the file.
@@ -201,13 +205,13 @@ impl Loaded {
                     .label("from this file")
                     .help("add `[optimise]` with `objective = { maximise = \"flat_ratio\" }` and `variables`; `forcewright new optimise-lan-box` has both"),
             );
-            return Err(Refused { diagnostics, sources: self.project.sources.clone(), file_missing: false });
+            return Err(self.refused(diagnostics));
         }
         let free = section.free(self.understood.numbers(), &mut diagnostics);
         let task = if diagnostics.has_errors() { None } else { self.understood.task(&free, Purpose::Search, &mut diagnostics) };
         match task.filter(|_| !diagnostics.has_errors()) {
             Some(task) => Ok((task, diagnostics)),
-            None => Err(Refused { diagnostics, sources: self.project.sources.clone(), file_missing: false }),
+            None => Err(self.refused(diagnostics)),
         }
     }
 
@@ -287,6 +291,7 @@ impl Loaded {
             self.scattering()?;
         }
         let variables = task.evaluator.variables().to_vec();
+        let places = self.places(&variables)?;
         let nominal: Vec<f64> = variables.iter().map(|v| v.nominal).collect();
         // What cannot be written is refused before the work, not after.
         let (possible, files) = Snapshot::of(files, |files| self.rewritten(files, target, &task.evaluator.numbers(&nominal)));
@@ -313,6 +318,11 @@ impl Loaded {
             let (found, looked) = self.hardened((files, target), (&task, &settings), (found, robust), &go_on, &stopped)?;
             (kept, robustness) = (Some(found), Some(looked));
         }
+        let mut rounded = None;
+        if let Some(found) = kept.take_if(|_| !places.is_empty()) {
+            let (found, sizes) = self.at_sizes((files, target), &settings, (found, &places), &go_on, &stopped)?;
+            (kept, rounded) = (Some(found), sizes);
+        }
         found.interrupted |= stopped.into_inner();
         let reserve = kept.as_ref().map_or(settings.reserve, |k| k.reserve.clone());
         let (best, text, after) = kept.map_or((None, None, None), |k| (Some(k.run), Some(k.text), Some(k.report)));
@@ -327,6 +337,7 @@ impl Loaded {
             tightened: if robustness.is_some() { Vec::new() } else { tightened(&task, &reserve) },
             reserve,
             robustness,
+            rounded,
             text,
             before,
             after,
@@ -434,7 +445,7 @@ impl Loaded {
     }
 
     /// The project file with other numbers, understood.
-    fn rewritten(&self, files: &dyn Files, target: &Path, values: &[(String, f64)]) -> Result<(String, Self), Refused> {
+    pub(crate) fn rewritten(&self, files: &dyn Files, target: &Path, values: &[(String, f64)]) -> Result<(String, Self), Refused> {
         let text = self.written(target, values).map_err(|error| {
             let mut diagnostics = Diagnostics::default();
             diagnostics.push(
@@ -442,7 +453,7 @@ impl Loaded {
                     .label("in this file")
                     .help("write that number in a table of its own, or without dotted keys"),
             );
-            Refused { diagnostics, sources: self.project.sources.clone(), file_missing: false }
+            self.refused(diagnostics)
         })?;
         let choices = Choices { variant: self.project.choices.variant.clone(), set: Vec::new() };
         let loaded = Self::from_file(&Changed { files, path: target, text: &text }, target, &choices)?;

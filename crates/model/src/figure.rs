@@ -19,6 +19,10 @@ pub enum Stroke {
     Limit,
     /// A region whose edge the points go around: tinted, without a line.
     Area,
+    /// Points that were measured: a dot each, joined by nothing.
+    Points,
+    /// The same of a second record: open dots.
+    OpenPoints,
 }
 
 /// One line of a plot. Values are SI; the plot's axes say how they are shown.

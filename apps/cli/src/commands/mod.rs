@@ -1,5 +1,6 @@
 //! One file per command.
 
+pub(crate) mod calibrate;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod completions;
@@ -10,6 +11,7 @@ pub(crate) mod materials;
 pub(crate) mod merge;
 pub(crate) mod new;
 pub(crate) mod optimise;
+pub(crate) mod pareto;
 pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod solve;
@@ -35,7 +37,9 @@ pub(crate) fn welcome() -> u8 {
            forcewright sweep lan-table3.toml --vary design.thickness=0.9mm..1.1mm:5    a table of designs\n  \
            forcewright synthesise FILE --out out          designs from requirements alone, the best first\n  \
            forcewright optimise FILE --out out            a better design, within ranges and requirements\n  \
+           forcewright pareto FILE --out out              designs between several goals, to choose from\n  \
            forcewright tolerance tolerance-lan-thin.toml  the yield under the scatter of making\n  \
+           forcewright calibrate FILE --out out           numbers of the design from a measured curve\n  \
            forcewright export lan-table3.toml --out out   DXF and STEP of the part\n  \
            forcewright compare A.toml B.toml              mechanisms of any family in one sheet\n  \
            forcewright reproduce lan2010                  the paper's numbers beside ours\n  \

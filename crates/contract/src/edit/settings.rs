@@ -21,6 +21,30 @@ pub fn with_settings(text: &str, settings: &[String], variant: Option<&str>) -> 
     Ok(document.to_string())
 }
 
+/// The text with a text in quotes at a path of keys, none of which is a place in a list; tables that are missing are written.
+///
+/// # Errors
+/// [`EditError`] names what is in the way.
+pub fn with_text_at(text: &str, keys: &[&str], value: &str) -> Result<String, EditError> {
+    let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| EditError::NotToml(e.message().to_owned()))?;
+    let in_the_way = || EditError::InTheWay(keys.join("."));
+    let (last, tables) = keys.split_last().ok_or_else(in_the_way)?;
+    let mut table: &mut dyn TableLike = document.as_table_mut();
+    for key in tables {
+        if !table.contains_key(key) {
+            let mut new = Table::new();
+            new.set_implicit(true);
+            table.insert(key, Item::Table(new));
+        }
+        table = table.get_mut(key).and_then(Item::as_table_like_mut).ok_or_else(in_the_way)?;
+    }
+    match table.get_mut(last) {
+        Some(old) => put(old.as_value_mut().ok_or_else(in_the_way)?, Value::from(value)),
+        None => drop(table.insert(last, Item::Value(Value::from(value)))),
+    }
+    Ok(document.to_string())
+}
+
 /// Sets a value; of a table each entry, so that its other entries stay. A key of a table may have dots of its own.
 fn lay(document: &mut DocumentMut, parts: &[&str], value: Value, variant: Option<&str>) -> Result<(), EditError> {
     match value {
@@ -90,7 +114,10 @@ fn set(table: &mut dyn TableLike, parts: &[&str], new: &New, create: bool) -> Re
     let [key, rest @ ..] = parts else { return Err(in_the_way()) };
     // A list is never a coordinate: `envelope.x = [low, high]` is a key of a table.
     let inside = place_in_list(rest).is_some() && !new.value.is_array();
-    if rest.is_empty() || (inside && table.get(key).is_none_or(|item| item.is_value() && !item.is_inline_table())) {
+    // Where neither a list nor one to write is there, `x` and `y` are keys of a table, which a point of an extended file understands too.
+    let lists =
+        table.get(key).map_or(new.list.is_some() || !matches!(rest, ["x" | "y"]), |item| item.is_value() && !item.is_inline_table());
+    if rest.is_empty() || (inside && lists) {
         if !create && !table.contains_key(key) {
             return Ok(());
         }

@@ -146,7 +146,7 @@ fn a_file_that_cannot_be_read_is_refused_where_it_is_named() {
     assert_eq!(reading.found, ["E0301 a.toml:5:1 measure_file"]);
     // A hostile number of files ends early.
     let many = (0..100).map(|i| format!("a{i}_file = \"{i}.csv\"")).collect::<Vec<_>>().join("\n");
-    let last = NAMED.replace("[design]\n", &format!("[calibrate]\n{many}\n[design]\n"));
+    let last = NAMED.replace("[design]\n", &format!("[environment]\n{many}\n[design]\n"));
     let reading = read_files(&[("a.toml", &last), ("wanted.csv", "")], None, &[]);
     assert!(reading.found.iter().any(|f| f.starts_with("E0101")) && reading.shown.contains("more than 64 files"), "{}", reading.shown);
 }

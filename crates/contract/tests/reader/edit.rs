@@ -1,6 +1,6 @@
 //! A project file with other values: what is changed is read back, everything else stays as it was typed.
 
-use forcewright_contract::edit::{EditError, with_values};
+use forcewright_contract::edit::{EditError, with_text_at, with_values, with_variant};
 
 use crate::toy::{Reading, read_files};
 
@@ -169,6 +169,46 @@ fn a_variant_that_says_otherwise_is_changed_and_others_are_not() {
     );
     let new = variants.replace("0.5 mm", "0.6 mm").replace("1.1", "1.3");
     assert!(after.ends_with(&new) && after.contains("friction  = 0.1\n"), "{after}");
+}
+
+/// A variant of its own: read with it, the numbers have their new values; read without it, nothing has changed.
+#[test]
+fn numbers_in_a_variant_leave_the_rest_as_it_is() {
+    let over = "extends = \"base.toml\"\n[variants.thin.design]\nthickness = \"0.5 mm\"\n";
+    for files in [vec![("a.toml", TEXT)], vec![("a.toml", over), ("base.toml", TEXT)]] {
+        let numbers = read(&files, None).numbers();
+        let wanted = [
+            ("design.thickness", 0.6e-3),
+            ("design.friction", 0.1),
+            ("design.nodes.a.at.y", 5e-3),
+            ("design.width.2", 4.5e-3),
+            ("design.beams.stiff.bend.2", 0.5),
+            ("design.beams.leaf.pin", 2e-3),
+            ("load.2.travel", 7e-3),
+        ];
+        let place = |path: &str| numbers.iter().position(|n| n.path == path).unwrap_or_else(|| panic!("no {path}"));
+        let changed: Vec<(usize, f64)> = wanted.iter().map(|(path, si)| (place(path), *si)).collect();
+        let text = with_variant(files[0].1, &numbers, &changed, "found").unwrap();
+        assert!(text.starts_with(files[0].1), "{text}");
+        let mut others = files.clone();
+        others[0].1 = &text;
+        let bits = |reading: &mut Reading| reading.numbers().iter().map(|n| n.si.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&mut read(&others, None)), bits(&mut read(&files, None)), "{text}");
+        for (index, new) in read(&others, Some("found")).numbers().iter().enumerate() {
+            let si = changed.iter().find(|(at, _)| *at == index).map_or(numbers[index].si, |(_, si)| *si);
+            assert!((new.si - si).abs() <= 5e-7 * si.abs(), "{}: {} instead of {si}\n{text}", new.path, new.si);
+        }
+    }
+}
+
+#[test]
+fn texts_are_written_at_paths_of_keys() {
+    let path = ["variants", "a.b", "measurements", "m", "offset", "x"];
+    let text = with_text_at("# one\nschema = 1\n", &path, "2 mm").unwrap();
+    assert!(text.starts_with("# one\nschema = 1\n") && text.contains("\"a.b\""), "{text}");
+    let again = with_text_at(&text, &path, "3 mm").unwrap();
+    assert_eq!(again, text.replace("2 mm", "3 mm"));
+    assert_eq!(with_text_at(&text, &["schema", "x"], "3 mm"), Err(EditError::InTheWay("schema.x".into())));
 }
 
 #[test]

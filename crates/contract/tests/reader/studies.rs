@@ -87,6 +87,33 @@ fn a_freedom_stays_within_what_the_parameter_can_mean() {
     assert!(free[1].lower.abs() <= 0.0 && (free[1].upper - 1.0).abs() <= 0.0, "{free:?}");
 }
 
+/// Sizes around values, in mm.
+fn around(variables: &str, values: &[f64]) -> Vec<Vec<f64>> {
+    let mut reading = read_text(&format!("{DESIGN}{variables}"));
+    assert!(reading.found.is_empty(), "{}", reading.shown);
+    let numbers = reading.numbers();
+    let mut diagnostics = Diagnostics::default();
+    let sized = reading.toy.studies.optimise.sized(&numbers, &mut diagnostics);
+    assert!(sized.len() == 1 && sized[0].path == "design.thickness" && !diagnostics.has_errors());
+    let millimetres = |si: &f64| (si * 1e9).round() / 1e6;
+    values.iter().map(|v| sized[0].around(v * 1e-3).iter().map(millimetres).collect()).collect()
+}
+
+#[test]
+fn sizes_lie_around_a_value_and_end_where_the_range_does() {
+    // 0.55, 0.75, …, 1.35: the last step would end beyond 1.5.
+    let steps =
+        "\"design.friction\" = { range = [0.1, 0.5] }\n\"design.thickness\" = { range = [\"0.55 mm\", \"1.5 mm\"], step = \"0.2 mm\" }\n";
+    let found = around(steps, &[0.5, 0.55, 0.6, 0.749_999_99, 0.95, 1.36, 1.5, 9.0]);
+    let wanted: [&[f64]; 8] = [&[0.55], &[0.55], &[0.55, 0.75], &[0.75], &[0.95], &[1.35], &[1.35], &[1.35]];
+    assert_eq!(found, wanted);
+    let list = "\"design.thickness\" = { among = [\"1.2 mm\", \"0.5 mm\", \"0.8 mm\"] }\n";
+    assert_eq!(millimetres(list), [("design.thickness".to_owned(), 0.5, 1.2)]);
+    let found = around(list, &[0.1, 0.5, 0.6, 0.8, 1.0, 1.2, 2.0]);
+    let wanted: [&[f64]; 7] = [&[0.5], &[0.5], &[0.5, 0.8], &[0.8], &[0.8, 1.2], &[1.2], &[1.2]];
+    assert_eq!(found, wanted);
+}
+
 #[test]
 fn what_is_wrong_is_said_at_its_place() {
     for (variables, code, place, help) in [

@@ -63,7 +63,7 @@ pub(crate) struct Beam {
 
 const SUPPORTS: &[Word] = &[Word { word: "clamped", doc: "held" }, Word { word: "pinned", doc: "turns" }];
 const RESERVED: &[Reserved] = &[
-    Reserved { key: "calibrate", instead: "a study reads it", ignored: true },
+    Reserved { key: "environment", instead: "a study reads it", ignored: true },
     Reserved { key: "errors", instead: "change the parameter", ignored: false },
 ];
 

@@ -110,6 +110,28 @@ pub struct Measured<'a> {
     pub branches: &'a [usize],
 }
 
+/// Where a calibration stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress {
+    /// The search.
+    Search {
+        /// Finished rounds.
+        rounds: usize,
+        /// Weighted squares with those of the priors.
+        squares: f64,
+    },
+    /// Intervals of the profile likelihood.
+    Intervals {
+        /// Ends that were found, two per parameter.
+        found: usize,
+        /// Ends that are looked for.
+        of: usize,
+    },
+}
+
+/// Is told where a calibration stands, and says whether to go on. Several threads ask, one after the other.
+pub type Watch<'a> = &'a mut (dyn FnMut(Progress) -> bool + Send);
+
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CalibrateError {
@@ -224,7 +246,8 @@ const RANK: f64 = 1e-9;
 /// Share of a parameter in such a direction from which it counts as not determined.
 const INVOLVED: f64 = 1e-3;
 
-/// Estimates the parameters of a model from what was measured. `watch` is told finished rounds and the squares, and says whether to go on.
+/// Estimates the parameters of a model from what was measured. Told to stop by `watch`, it keeps the best parameters so far, and those
+/// intervals of the profile likelihood that it has.
 ///
 /// ```
 /// use forcewright_study::calibrate::{Limits, Measured, Model, Parameter, Plan, fit};
@@ -242,7 +265,7 @@ const INVOLVED: f64 = 1e-3;
 /// let (x, y) = (vec![1.0, 2.0, 3.0, 4.0], vec![2.1, 3.9, 6.2, 7.9]);
 /// let rate = Parameter { name: "rate".into(), start: 1.0, limits: Limits { lower: 0.0, upper: 1e3 }, scale: 1.0, prior: None };
 /// let measured = Measured { x: &x, y: &y, raw: &y, branches: &[4] };
-/// let found = fit(&Spring(x.clone()), &[rate], measured, &Plan::default(), &mut |_, _| true)?;
+/// let found = fit(&Spring(x.clone()), &[rate], measured, &Plan::default(), &mut |_| true)?;
 /// // k = Σ x y / Σ x² = 60.1/30
 /// assert!((found.parameters[0].estimate.value - 60.1 / 30.0).abs() < 1e-12);
 /// assert!(found.parameters[0].estimate.interval.contains(2.0));
@@ -256,7 +279,7 @@ pub fn fit(
     parameters: &[Parameter],
     measured: Measured<'_>,
     plan: &Plan,
-    watch: &mut dyn FnMut(usize, f64) -> bool,
+    watch: Watch<'_>,
 ) -> Result<Fit, CalibrateError> {
     check(parameters, &measured)?;
     let limits: Vec<Limits> = parameters.iter().map(|p| p.limits).collect();
@@ -266,14 +289,18 @@ pub fn fit(
     model.predict(&start, false, &mut room, &mut before).map_err(CalibrateError::NoStart)?;
     let sizes: Vec<f64> = parameters.iter().map(|p| p.scale).collect();
     let weighted = Weighting { model, parameters, limits: &limits, sizes: &sizes, measured, loss: plan.loss };
-    let settled = weighted.settle(&start, &mut room, watch).map_err(CalibrateError::NoStart)?;
+    let search = &mut |rounds, squares| watch(Progress::Search { rounds, squares });
+    let mut settled = weighted.settle(&start, &mut room, search).map_err(CalibrateError::NoStart)?;
     let known = Known::of(&settled, parameters);
     let t = student(known.degrees, plan.confidence);
-    let profiles = if plan.profiles && settled.found.stop != Stop::Interrupted {
-        profile::intervals(&weighted, &settled, &known, t)
-    } else {
-        vec![None; parameters.len()]
-    };
+    let mut profiles = vec![None; parameters.len()];
+    if plan.profiles && settled.found.stop != Stop::Interrupted {
+        let (found, whole) = profile::intervals(&weighted, &settled, &known, t, watch);
+        profiles = found;
+        if !whole {
+            settled.found.stop = Stop::Interrupted;
+        }
+    }
     let each = parameters.iter().enumerate().zip(profiles).map(|((i, parameter), profile)| {
         let (value, error) = (settled.found.place.x[i], known.errors[i]);
         let at = known.at[i];

@@ -30,6 +30,7 @@ pub use fan::{Fan, Station};
 pub use interval::{Confidence, Estimate, Interval, clopper_pearson, fisher, fisher_tail, student, wilson};
 pub use linear::{Contribution, JointPlan, LinearError, LinearModel};
 pub use population::{Population, PopulationError};
+pub(crate) use scramble::mixed;
 pub use sensitivity::{SensitivityError, SensitivityPlan, SensitivityTally, SobolIndices};
 pub use sobol::{Replicates, Sobol, SobolError};
 pub use yields::{Yield, YieldBasis, YieldTally};

@@ -37,6 +37,12 @@ impl Optimised {
             "margin": self.reserve.margin,
             "tightened": self.tightened.iter().map(|(name, by, unit)| json!({ "name": name, "by": by, "unit": unit })).collect::<Vec<_>>(),
             "robust": self.robustness.as_ref().map(robust),
+            "rounded": self.rounded.as_ref().map(|r| json!({
+                "numbers": r.numbers.iter().map(|(path, before, after)| json!({ "path": path, "before": before, "after": after })).collect::<Vec<_>>(),
+                "goal": r.goal.map(|goal| self.wording.value(goal)),
+                "tried": r.tried,
+                "met": r.met,
+            })),
             "active": best.map_or_else(Vec::new, |b| pages::both_sides(b).iter().map(|a| self.active(b, a)).collect()),
             "interrupted": self.search.interrupted,
             "best": self.search.best,

@@ -11,7 +11,7 @@ use forcewright_study::nlp::Stop;
 use forcewright_study::optimise::{Active, Run};
 use forcewright_study::sampling::Yield;
 
-use super::{Optimised, Robust, Robustness, wording};
+use super::{Optimised, Robust, Robustness, Rounded, wording};
 
 /// Basins named in a table.
 const MOST_BASINS: usize = 12;
@@ -94,8 +94,30 @@ impl Optimised {
             all.push(say("Starts", self.starts_in_words()));
         }
         all.extend(self.margin_in_words().map(|text| say("Margin", text)));
+        all.extend(self.rounded.as_ref().map(|r| say("Sizes", self.sizes_in_words(r))));
         all.extend(self.robustness.as_ref().map(|r| say("Scatter of making", robustness_in_words(r))));
         all
+    }
+
+    /// What rounding to sizes did, and what it cost.
+    fn sizes_in_words(&self, rounded: &Rounded) -> String {
+        let list = rounded.numbers.iter().map(|(path, before, after)| {
+            let unit = self.variables.iter().zip(&self.units).find(|(v, _)| v.path == *path).map(|(_, unit)| unit.clone());
+            let unit = unit.unwrap_or_else(|| Unit::si(Dimension::Ratio));
+            format!("`{path}` from {} to {}", format_si(*before, &unit, 5), format_si(*after, &unit, 5))
+        });
+        let [before, after] = rounded.goal.map(|goal| self.wording.show(goal));
+        let kept = match (rounded.met, rounded.tried) {
+            (0, _) => "none of them meets every requirement: the one that misses least is written".to_owned(),
+            (met, tried) if met == tried => "all of them meet every requirement".to_owned(),
+            (1, _) => "one of them meets every requirement".to_owned(),
+            (met, _) => format!("{met} of them meet every requirement"),
+        };
+        format!(
+            "Rounded {}. {} combinations of sizes were tried, the rest searched for again each time; {kept}. Without sizes the goal is {before}, with them {after}.",
+            list.collect::<Vec<_>>().join(", "),
+            rounded.tried
+        )
     }
 
     fn margin_in_words(&self) -> Option<String> {

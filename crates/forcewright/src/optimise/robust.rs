@@ -107,7 +107,7 @@ impl Loaded {
         let section = &self.understood.studies().tolerance;
         let place = section.present.as_ref().map_or(self.project.root, |p| p.span);
         let found = section.scattering(self.understood.numbers(), place, &mut diagnostics);
-        found.ok_or_else(|| Refused { diagnostics, sources: self.project.sources.clone(), file_missing: false })
+        found.ok_or_else(|| self.refused(diagnostics))
     }
 
     /// How far inside its limits the design of this project, which a run has ended at, must be kept: `asked` and what the scatter takes.
@@ -118,7 +118,7 @@ impl Loaded {
     pub(super) fn reserve(&self, task: &Task, run: &Run, robust: Robust, asked: &Reserve) -> Result<Option<Reserve>, Refused> {
         let Scattering { free, population } = self.scattering()?;
         let mut diagnostics = Diagnostics::default();
-        let refused = |diagnostics| Refused { diagnostics, sources: self.project.sources.clone(), file_missing: false };
+        let refused = |diagnostics| self.refused(diagnostics);
         let Some(around) = self.understood.task(&free, Purpose::Scatter, &mut diagnostics).filter(|_| !diagnostics.has_errors()) else {
             return Err(refused(diagnostics));
         };

@@ -42,7 +42,7 @@ pub(super) enum Values {
 
 /// Two ends in one unit.
 #[derive(Clone, Debug)]
-pub(super) struct Ends {
+pub(crate) struct Ends {
     from: f64,
     to: f64,
     /// Both as typed, with the unit: what is typed is what is taken.
@@ -171,7 +171,19 @@ pub(super) enum Place {
 }
 
 impl Ends {
-    fn at(&self, fraction: f64) -> String {
+    /// Both ends, in their unit.
+    pub(crate) fn both(&self) -> [f64; 2] {
+        [self.from, self.to]
+    }
+
+    /// The same with values of so many significant digits of the larger end.
+    pub(crate) fn with_digits(mut self, digits: usize) -> Self {
+        self.decimals = (self.decimals + digits).saturating_sub(usize::try_from(DIGITS).unwrap_or(0));
+        self
+    }
+
+    /// The value at a part of the way from one end to the other.
+    pub(crate) fn at(&self, fraction: f64) -> String {
         let value = self.from * (1.0 - fraction) + self.to * fraction;
         let digits = format!("{value:.*}", self.decimals);
         let digits = if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { &digits };
@@ -229,7 +241,7 @@ fn values_of(spec: &str) -> Result<Values, String> {
 }
 
 /// The two ends of a range; the unit may stand at the second alone.
-fn ends(from: &str, to: &str) -> Result<Ends, String> {
+pub(crate) fn ends(from: &str, to: &str) -> Result<Ends, String> {
     let read_end = |text: &str| read(text).map_err(|e| quantity_mistake(text, &e));
     let (last, dimension) = read_end(to)?;
     let bare = Quantity::parse(from, Dimension::Ratio).is_ok_and(|q| q.unit.symbol().is_empty());
@@ -258,7 +270,7 @@ fn ends(from: &str, to: &str) -> Result<Ends, String> {
 }
 
 /// A quantity of whatever dimension its unit says.
-fn read(text: &str) -> Result<(Quantity, Dimension), QuantityError> {
+pub(crate) fn read(text: &str) -> Result<(Quantity, Dimension), QuantityError> {
     let mut worst = QuantityError::NotANumber;
     for dimension in Dimension::all() {
         match Quantity::parse(text, dimension) {
@@ -311,7 +323,7 @@ fn split_list(spec: &str) -> Result<Vec<String>, String> {
 }
 
 /// A text without the quotes around it.
-fn plain(text: &str) -> &str {
+pub(crate) fn plain(text: &str) -> &str {
     let inside = |quote| text.strip_prefix(quote).and_then(|t: &str| t.strip_suffix(quote));
     inside('"').or_else(|| inside('\'')).unwrap_or(text)
 }

@@ -2,7 +2,7 @@
 
 use forcewright_base::units::{Dimension, Quantity};
 use forcewright_contract::data::DataFile;
-use forcewright_contract::describe::{Describe, Located, Param, Reserved, Section, Slot, Visitor, Word};
+use forcewright_contract::describe::{Describe, Located, Param, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
 use forcewright_contract::metrics::Limits;
 use forcewright_contract::studies::Studies;
@@ -280,10 +280,6 @@ const MOST_POINTS: usize = 500;
 /// In parallel.
 const MOST_SPRINGS: usize = 32;
 
-const STUDY: &str = "it belongs to a study that this version does not have; `solve` does not need it";
-const RESERVED_SECTIONS: &[Reserved] =
-    &[Reserved { key: "measurements", instead: STUDY, ignored: true }, Reserved { key: "calibrate", instead: STUDY, ignored: true }];
-
 impl Describe for Spec {
     fn describe(&mut self, v: &mut dyn Visitor) {
         self.header.describe(v);
@@ -297,7 +293,6 @@ impl Describe for Spec {
         self.model.describe(v, &Param::new("model", "Which equations are solved."));
         self.synthesise.describe(v, &Param::new("synthesise", "What `forcewright synthesise` may use: room, springs, rollers."));
         self.studies.describe(v);
-        v.reserved(RESERVED_SECTIONS);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The project file of a cable drive as it is typed: every parameter is described here, once.
 
 use forcewright_base::units::{Dimension, Quantity};
-use forcewright_contract::describe::{Describe, Form, Located, Member, Param, Reserved, Section, Slot, Visitor, Word};
+use forcewright_contract::describe::{Describe, Form, Located, Member, Param, Section, Slot, Visitor, Word};
 use forcewright_contract::header::Header;
 use forcewright_contract::metrics::Limits;
 use forcewright_contract::studies::Studies;
@@ -205,10 +205,6 @@ const MOST_STARTS: f64 = 64.0;
 const LARGEST_TRAVEL_RAD: f64 = 630.0;
 const MOST_POINTS: usize = 100;
 
-const STUDY: &str = "it belongs to a study that this version does not have; `solve` does not need it";
-const RESERVED_SECTIONS: &[Reserved] =
-    &[Reserved { key: "measurements", instead: STUDY, ignored: true }, Reserved { key: "calibrate", instead: STUDY, ignored: true }];
-
 impl Describe for Spec {
     fn describe(&mut self, v: &mut dyn Visitor) {
         self.header.describe(v);
@@ -221,7 +217,6 @@ impl Describe for Spec {
         let doc = "What `forcewright synthesise` may use: ratio, travel, envelope, friction, cables, drums.";
         self.synthesise.describe(v, &Param::new("synthesise", doc));
         self.studies.describe(v);
-        v.reserved(RESERVED_SECTIONS);
     }
 }
 

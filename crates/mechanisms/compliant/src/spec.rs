@@ -280,10 +280,7 @@ const MOST_NODES: usize = 64;
 /// A nanonewton.
 const SMALLEST_N: f64 = 1e-9;
 
-const STUDY: &str = "it belongs to a study that this version does not have; `solve` does not need it";
 const RESERVED_SECTIONS: &[Reserved] = &[
-    Reserved { key: "measurements", instead: STUDY, ignored: true },
-    Reserved { key: "calibrate", instead: STUDY, ignored: true },
     Reserved {
         key: "environment",
         instead: "compliant mechanisms are solved without gravity, at the temperature of the material data",

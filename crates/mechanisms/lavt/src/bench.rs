@@ -100,7 +100,7 @@ impl Bench {
 
 /// Reads and fits the bench of a project; `None` without one or after an error.
 pub(crate) fn bench_of(spec: &Spec, ratio: f64, diagnostics: &mut Diagnostics) -> Option<Bench> {
-    let section = &spec.measurements.bench;
+    let section = &spec.bench;
     let file = section.file.as_ref()?;
     let runs = runs::read(section, diagnostics)?;
     let mut loads: Vec<f64> = runs.iter().map(|r| r.output_nm).collect();

@@ -6,7 +6,7 @@ use forcewright_contract::header::Header;
 use forcewright_contract::metrics::Limits;
 use forcewright_contract::studies::Studies;
 
-use crate::bench::section::Measurements;
+use crate::bench::section::Bench;
 use crate::metrics::LavtMetrics;
 use crate::synthesis::Synthesise;
 
@@ -31,12 +31,12 @@ pub struct Spec {
     pub(crate) parts: Section<Parts>,
     /// `[model]`
     pub(crate) model: Section<Model>,
-    /// `[measurements]`
-    pub(crate) measurements: Section<Measurements>,
     /// `[synthesise]`
     pub(crate) synthesise: Section<Synthesise>,
-    /// `[optimise]` and `[tolerance]`
+    /// `[optimise]`, `[tolerance]`, the other tables of `[measurements]`, and `[calibrate]`
     pub(crate) studies: Studies,
+    /// `[measurements.bench]`
+    pub(crate) bench: Section<Bench>,
 }
 
 /// What the transmission must do.
@@ -281,9 +281,10 @@ impl Describe for Spec {
         self.motor.describe(v, &Param::new("motor", "The motor at the input, and what feeds it."));
         self.parts.describe(v, &Param::new("parts", "The parts that are made. Without influence on the torques."));
         self.model.describe(v, &Param::new("model", "Which equations are solved."));
-        self.measurements.describe(v, &Param::new("measurements", "What was measured, beside what is computed."));
         self.synthesise.describe(v, &Param::new("synthesise", "What `forcewright synthesise` may use, and how large it may be."));
-        self.studies.describe(v);
+        let doc = "A bench as in section 4.2 of the paper: masses hang on the output pulley, a force turns the input pulley slowly. \
+                   `forcewright solve` shows it beside what is computed, with losses, shift and friction; `calibrate` does not read it.";
+        self.studies.describe_with(v, &mut |v| self.bench.describe(v, &Param::new("bench", doc)));
     }
 }
 

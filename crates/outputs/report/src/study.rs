@@ -1,9 +1,12 @@
 //! The page of a study: sections of tables, figures and text in the style of the design report.
 
-use forcewright_model::{CheckState, Figure};
+use std::fmt::Write as _;
+
+use forcewright_model::{Axis, CheckState, Figure};
 
 use crate::escape::{each, escape, path, prose};
 use crate::html::{Provenance, figure, head, provenance, section};
+use crate::svg;
 use crate::table::{Column, Table};
 
 /// A page. All texts are plain: whatever stands in them is shown, not obeyed.
@@ -60,6 +63,64 @@ pub enum StudyPart {
     },
     /// A figure.
     Figure(Box<Figure>),
+    /// Points to choose from.
+    Scatter(Box<Scatter>),
+    /// Rows that points lead to.
+    Picks(Picks),
+}
+
+/// Points to choose from: each leads to its row in [`Picks`].
+#[derive(Clone, Debug)]
+pub struct Scatter {
+    /// Stable identifier.
+    pub id: &'static str,
+    /// What it shows.
+    pub title: String,
+    /// How it is read.
+    pub caption: String,
+    /// Abscissa.
+    pub x: Axis,
+    /// Ordinate.
+    pub y: Axis,
+    /// The points.
+    pub points: Vec<ScatterPoint>,
+}
+
+/// A point to choose.
+#[derive(Clone, Debug)]
+pub struct ScatterPoint {
+    /// Abscissa, SI.
+    pub x: f64,
+    /// Ordinate, SI.
+    pub y: f64,
+    /// What it is called: `Design 3`.
+    pub label: String,
+    /// Identifier of its row.
+    pub leads_to: String,
+    /// Whether it has a ring.
+    pub outstanding: bool,
+}
+
+/// A table whose rows can be led to.
+#[derive(Clone, Debug)]
+pub struct Picks {
+    /// What it shows.
+    pub caption: String,
+    /// Headings, and what stands below them; the second one heads the files.
+    pub columns: Vec<(String, StudyColumn)>,
+    /// The rows.
+    pub rows: Vec<Pick>,
+}
+
+/// A row that can be led to.
+#[derive(Clone, Debug)]
+pub struct Pick {
+    /// Its identifier.
+    pub id: String,
+    /// Its cells but the second.
+    pub cells: Vec<String>,
+    /// A file beside the page, for the second cell.
+    pub file: Option<String>,
 }
 
 /// How a column is set.
@@ -151,7 +212,76 @@ fn content(part: &StudyPart, figures: &mut usize) -> String {
             *figures += 1;
             figure(*figures, own)
         }
+        StudyPart::Scatter(own) if own.points.is_empty() => String::new(),
+        StudyPart::Scatter(own) => {
+            *figures += 1;
+            format!(
+                "<figure id=\"figure-{}\" class=\"plot\">\n{}<figcaption><strong>Figure {figures}. {}.</strong> {}</figcaption>\n</figure>\n",
+                escape(own.id),
+                svg::scatter::draw(own, svg::PlotSize::default()).svg,
+                escape(own.title.trim_end_matches('.')),
+                prose(&own.caption)
+            )
+        }
+        StudyPart::Picks(own) if own.rows.is_empty() => String::new(),
+        StudyPart::Picks(own) => picks(own),
     }
+}
+
+/// Rows with identifiers, so that the style can mark the one that is led to.
+fn picks(picks: &Picks) -> String {
+    let mut body = String::new();
+    let heading = |i: usize| picks.columns.get(i).map_or("", |c| c.0.as_str());
+    for pick in &picks.rows {
+        let _ = write!(body, "<tr id=\"{}\">", escape(&pick.id));
+        for (i, cell) in pick.cells.iter().enumerate() {
+            // The file stands between the first cell and the others.
+            let at = if i == 0 { 0 } else { i + 1 };
+            let (class, shown) = match picks.columns.get(at).map(|c| c.1) {
+                Some(StudyColumn::Number) => (" class=\"number\"", escape(cell)),
+                Some(StudyColumn::Code) => (" class=\"code\"", path(cell)),
+                Some(StudyColumn::Text) | None => ("", prose(cell)),
+            };
+            let _ = match i {
+                0 => write!(body, "<th scope=\"row\"{class}>{shown}</th>{}", file_cell(pick, heading(1))),
+                _ => write!(body, "<td{class} data-label=\"{}\">{shown}</td>", escape(heading(at))),
+            };
+        }
+        body.push_str("</tr>\n");
+    }
+    let columns: Vec<(&str, Column)> = picks
+        .columns
+        .iter()
+        .map(|(title, column)| {
+            let kind = match column {
+                StudyColumn::Text => Column::Text,
+                StudyColumn::Number => Column::Number,
+                StudyColumn::Code => Column::Code,
+            };
+            (title.as_str(), kind)
+        })
+        .collect();
+    let mut table = Table::new("study picks", &picks.caption, &columns);
+    table.rows(picks.rows.len(), &body);
+    table.finish()
+}
+
+fn file_cell(pick: &Pick, heading: &str) -> String {
+    let file = pick.file.as_deref().map_or_else(|| "–".to_owned(), |f| format!("<a href=\"{}\">{}</a>", url(f), path(f)));
+    format!("<td class=\"code\" data-label=\"{}\">{file}</td>", escape(heading))
+}
+
+/// The name of a file beside the page as a relative address.
+fn url(file: &str) -> String {
+    let mut out = String::from("./");
+    for byte in file.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-._~".contains(&byte) {
+            out.push(char::from(byte));
+        } else {
+            let _ = write!(out, "%{byte:02X}");
+        }
+    }
+    out
 }
 
 #[cfg(test)]
@@ -187,5 +317,49 @@ mod tests {
         assert!(
             !html.contains("<script") && html.contains("&lt;script&gt;") && html.contains("id=\"full\"") && !html.contains("id=\"empty\"")
         );
+    }
+
+    /// Points lead to rows, and rows to files, by addresses that nothing typed can break out of; the style marks the row.
+    #[test]
+    fn points_lead_to_their_rows() {
+        use forcewright_base::units::{Dimension, Unit};
+        let axis = |name: &'static str| Axis {
+            name,
+            label: format!("goal <{name}>"),
+            dimension: Dimension::Ratio,
+            display: Unit::si(Dimension::Ratio),
+        };
+        let point = |i: u32| ScatterPoint {
+            x: f64::from(i),
+            y: 1.0 / f64::from(i),
+            label: format!("Design {i}"),
+            leads_to: format!("design-{i}"),
+            outstanding: i == 2,
+        };
+        let scatter = Scatter {
+            id: "front",
+            title: "A front".to_owned(),
+            caption: "Caption.".to_owned(),
+            x: axis("a"),
+            y: axis("b"),
+            points: (1..=3).map(point).collect(),
+        };
+        let mut figures = 0;
+        let html = content(&StudyPart::Scatter(Box::new(scatter)), &mut figures);
+        assert_eq!(html.matches("<a class=\"pick\" href=\"#design-").count(), 3);
+        assert!(html.contains("role=\"group\"") && !html.contains("role=\"img\""));
+        assert!(html.contains("<title>A front</title>") && html.contains("<desc>Caption. 3 points"));
+        assert!(html.contains("aria-label=\"Design 2: goal &lt;a&gt; 2, goal &lt;b&gt; 0.5\""), "{html}");
+        assert!(figures == 1 && html.contains("Figure 1. A front."));
+        let columns = vec![("No".to_owned(), StudyColumn::Number), ("File".to_owned(), StudyColumn::Code)];
+        let row = |file: Option<&str>| Pick { id: "design-1".to_owned(), cells: vec!["1".to_owned()], file: file.map(str::to_owned) };
+        let rows = vec![row(Some("a b\"<x>.toml")), row(None)];
+        let html = content(&StudyPart::Picks(Picks { caption: "Rows".to_owned(), columns, rows }), &mut figures);
+        assert!(html.contains("<tr id=\"design-1\"><th scope=\"row\" class=\"number\">1</th>"));
+        assert!(
+            html.contains("<a href=\"./a%20b%22%3Cx%3E.toml\">a b&quot;&lt;x&gt;.<wbr />toml</a>") && html.contains(">–</td>"),
+            "{html}"
+        );
+        assert!(include_str!("report.css").contains("tr:target"));
     }
 }

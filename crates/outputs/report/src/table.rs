@@ -70,6 +70,12 @@ impl Table {
         self.body.push_str("</tr>\n");
     }
 
+    /// Adds rows that are markup already.
+    pub(crate) fn rows(&mut self, count: usize, markup: &str) {
+        self.rows += count;
+        self.body.push_str(markup);
+    }
+
     /// The finished table, in a box that scrolls sideways on narrow screens.
     pub(crate) fn finish(self) -> String {
         // Short tables stay on one page of paper.

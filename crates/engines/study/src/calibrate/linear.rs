@@ -116,9 +116,14 @@ impl Triangle {
             rows.extend((0..free.len()).map(|k| if k == place { damping[*j] } else { 0.0 }));
             b.push(0.0);
         }
-        let small = Self::of(free.len(), &rows, &b).solve();
+        // Of columns of one length: what is small beside another in its unit is not small.
+        let m = free.len();
+        let length = |k: usize| rows.iter().skip(k).step_by(m).map(|v| v * v).sum::<f64>().sqrt();
+        let lengths: Vec<f64> = (0..m).map(length).map(|l| if l > 0.0 { l } else { 1.0 }).collect();
+        rows.iter_mut().enumerate().for_each(|(at, v)| *v /= lengths[at % m]);
+        let small = Self::of(m, &rows, &b).solve();
         let mut best = x.to_vec();
-        free.iter().zip(small).for_each(|(j, value)| best[*j] = value);
+        free.iter().zip(small.iter().zip(&lengths)).for_each(|(j, (value, length))| best[*j] = value / length);
         best
     }
 

@@ -14,8 +14,10 @@ const MOST_DAMPING: f64 = 1e12;
 /// Part of the squares that a whole step of Gauss and Newton would still take: its root is the largest cosine between the residuals and
 /// the tangents, and parameters are then wrong by that part of their standard errors, about.
 const AT_REST: f64 = 1e-19;
-/// The same where no step finds less, which is as near as rounding of the model lets come.
-const NEARLY_AT_REST: f64 = 1e-6;
+/// Where no step finds less, which is as near as rounding of the model or kinks of its curve let come: the distance from the optimum of the
+/// tangents, in standard errors, root mean square over the parameters. D. M. Bates & D. G. Watts, "Nonlinear Regression Analysis and Its
+/// Applications", Wiley 1988, section 2.2.3, call it the relative offset.
+const NEARLY_AT_REST: f64 = 0.2;
 /// Longest step of a parameter, over its own size or what is a large change of it: a longer one may end where the curve has forgotten it.
 const LONGEST: f64 = 1.0;
 /// Residuals that are the rounding of what was measured.
@@ -24,7 +26,7 @@ const EXACT: f64 = 4.0 * f64::EPSILON;
 /// How a search ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// No step within the bounds makes the squares smaller.
+    /// No step within the bounds makes the squares smaller, and the tangents promise next to nothing.
     Converged,
     /// Steps find nothing smaller though the tangents promise it: the model is not smooth, or its derivatives are wrong.
     Stalled,
@@ -127,7 +129,11 @@ impl Problem<'_> {
                 let each: Vec<f64> = scales.iter().map(|s| damping.sqrt() * s).collect();
                 tangent.bounded(&each, &low, &high)
             };
-            let left = tangent.gain(&step(LEAST_DAMPING)) / place.squares.max(f64::MIN_POSITIVE);
+            // Of the whole step, however long: a valley that ends far away is no end.
+            let bound = |of: fn(&Limits) -> f64| -> Vec<f64> { self.limits.iter().zip(&place.x).map(|(l, x)| of(l) - x).collect() };
+            let each: Vec<f64> = scales.iter().map(|s| LEAST_DAMPING.sqrt() * s).collect();
+            let whole = tangent.bounded(&each, &bound(|l| l.lower), &bound(|l| l.upper));
+            let left = tangent.gain(&whole) / place.squares.max(f64::MIN_POSITIVE);
             if left <= AT_REST || place.squares <= EXACT * EXACT * self.size() {
                 return Ok(Found { place, stop: Stop::Converged, rounds });
             }
@@ -152,7 +158,10 @@ impl Problem<'_> {
                 damping *= harder;
                 harder *= 2.0;
                 if damping > MOST_DAMPING {
-                    let stop = if left <= NEARLY_AT_REST { Stop::Converged } else { Stop::Stalled };
+                    let parameters = place.x.len() as f64;
+                    let free = (self.measured.len() as f64 - parameters).max(1.0);
+                    let near = left * free / parameters <= NEARLY_AT_REST * NEARLY_AT_REST;
+                    let stop = if near { Stop::Converged } else { Stop::Stalled };
                     return Ok(Found { place, stop, rounds });
                 }
             }

@@ -38,7 +38,7 @@ pub(crate) fn free(start: f64) -> Parameter {
 /// A fit of one branch.
 pub(crate) fn fitted(model: &dyn Model, parameters: &[Parameter], x: &[f64], y: &[f64], plan: &Plan) -> Fit {
     let measured = Measured { x, y, raw: y, branches: &[x.len()] };
-    fit(model, parameters, measured, plan, &mut |_, _| true).expect("a fit")
+    fit(model, parameters, measured, plan, &mut |_| true).expect("a fit")
 }
 
 /// Seeded noise (splitmix64).

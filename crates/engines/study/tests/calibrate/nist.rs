@@ -91,7 +91,7 @@ fn read(text: &str) -> Certified {
     }
 }
 
-/// The one start from which the certified values are not reached: the search ends where the residuals are as large as the data.
+/// The one start from which the certified values are not reached: a valley so long and bent that the rounds do not suffice.
 const LOST: (&str, usize) = ("MGH10", 0);
 
 /// Digits in which two numbers agree.
@@ -135,8 +135,8 @@ fn certified_values_from_both_starts() {
                 found.stop
             );
             if (set.name, which) == LOST {
-                // Known and not mended: seen here so that a better search, or a worse one, is noticed.
-                assert!(found.noise > 1e3 * certified.noise, "{} is reached now: take it out of the exceptions", set.name);
+                // Not reached in the rounds that there are, and said so: that it is called converged would be the mistake.
+                assert!(found.stop == Stop::RoundLimit && found.noise > 10.0 * certified.noise, "{}: {found:?}", set.name);
                 continue;
             }
             let least = 6.0;

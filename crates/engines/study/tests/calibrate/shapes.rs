@@ -1,7 +1,7 @@
 //! Bounds, priors, far points, what cannot be told apart, and what no parameter explains.
 
-use forcewright_study::calibrate::{Against, Bound, CalibrateError, Limits, Loss, Measured, Plan, Prior, Stop, fit};
-use num_dual::Dual64;
+use forcewright_study::calibrate::{Against, Bound, CalibrateError, Limits, Loss, Measured, Plan, Prior, Progress, Stop, fit};
+use num_dual::{Dual64, DualNum};
 
 use super::common::{Formula, Noise, fitted, free};
 
@@ -137,12 +137,39 @@ fn repeats_are_believed() {
     assert!(bad.unexplained && bad_lack.p < 1e-4 && !good.unexplained && good_lack.p > 0.005);
 }
 
+/// Told to stop while it looks for intervals, it keeps estimates and Student's intervals; told to stop at once, the start.
+#[test]
+fn a_stop_keeps_what_is_there() {
+    let x = places(40);
+    let model = Formula { x: x.clone(), of: |x: f64, p: &[Dual64]| p[0] * (-p[1] * x).exp() };
+    let mut noise = Noise(17);
+    let y: Vec<f64> = x.iter().map(|x| 5.0 * forcewright_base::maths::exp(-0.8 * x) + 0.1 * noise.normal()).collect();
+    let run = |on: &mut (dyn FnMut(Progress) -> bool + Send)| {
+        let measured = Measured { x: &x, y: &y, raw: &y, branches: &[40] };
+        fit(&model, &[free(4.0), free(1.0)], measured, &Plan::default(), on).expect("a fit")
+    };
+    let mut ends = Vec::new();
+    let whole = run(&mut |p| {
+        if let Progress::Intervals { found, of } = p {
+            ends.push((found, of));
+        }
+        true
+    });
+    assert!(whole.stop == Stop::Converged && whole.parameters.iter().all(|p| p.profile.is_some()));
+    assert!(ends.windows(2).all(|w| w[0].0 <= w[1].0) && ends.last() == Some(&(4, 4)), "{ends:?}");
+    let part = run(&mut |p| matches!(p, Progress::Search { .. }));
+    assert!(part.stop == Stop::Interrupted && part.parameters.iter().all(|p| p.profile.is_none()));
+    assert!(part.parameters.iter().zip(&whole.parameters).all(|(a, b)| a.estimate == b.estimate && a.error.to_bits() == b.error.to_bits()));
+    let none = run(&mut |_| false);
+    assert!(none.stop == Stop::Interrupted && (none.parameters[0].estimate.value - 4.0).abs() < 1e-12);
+}
+
 #[test]
 fn nonsense_is_refused() {
     let model = Formula { x: places(5), of: |x: f64, p: &[Dual64]| p[0] * x };
     let run = |parameters: &[_], y: &[f64]| {
         let measured = Measured { x: &model.x, y, raw: y, branches: &[5] };
-        fit(&model, parameters, measured, &Plan::default(), &mut |_, _| true).map(|_| ())
+        fit(&model, parameters, measured, &Plan::default(), &mut |_| true).map(|_| ())
     };
     let good = [1.0, 2.0, 3.0, 4.0, 5.0];
     assert_eq!(run(&[], &good), Err(CalibrateError::NoParameter));

@@ -2,13 +2,7 @@
 
 use forcewright_base::units::{Dimension, Quantity};
 use forcewright_contract::data::DataFile;
-use forcewright_contract::describe::{Describe, Param, Section, Slot, Visitor};
-
-/// What was measured.
-#[derive(Debug, Default)]
-pub(crate) struct Measurements {
-    pub bench: Section<Bench>,
-}
+use forcewright_contract::describe::{Describe, Param, Reserved, Slot, Visitor};
 
 /// Force on the cable of the input pulley over its turns, for masses on the cable of the output pulley.
 #[derive(Debug, Default)]
@@ -21,12 +15,9 @@ pub(crate) struct Bench {
     pub turn: Slot<String>,
 }
 
-impl Describe for Measurements {
-    fn describe(&mut self, v: &mut dyn Visitor) {
-        let doc = "A bench as in section 4.2 of the paper: masses hang on the output pulley, a force turns the input pulley slowly.";
-        self.bench.describe(v, &Param::new("bench", doc));
-    }
-}
+const CURVE: &str = "`bench` is the bench with masses; a curve for `forcewright calibrate` has another name: `[measurements.curve]`";
+const RESERVED_KEYS: &[Reserved] =
+    &[Reserved { key: "x", instead: CURVE, ignored: false }, Reserved { key: "y", instead: CURVE, ignored: false }];
 
 impl Describe for Bench {
     fn describe(&mut self, v: &mut dyn Visitor) {
@@ -38,5 +29,6 @@ impl Describe for Bench {
         v.text(&Param::new("force", "Header of the column of forces with its unit, `F / N`.").required(), &mut self.force);
         let doc = "Header of the column of turns of the input, `turn / turn`: with it means are those of whole turns.";
         v.text(&Param::new("turn", doc), &mut self.turn);
+        v.reserved(RESERVED_KEYS);
     }
 }

@@ -15,6 +15,14 @@ const STEPS: u8 = 10;
 /// Opacity of tinted regions.
 pub(super) const AREA: f64 = 0.2;
 
+/// Radius of a measured point.
+pub(super) const DOT: f64 = 2.4;
+
+/// Attributes of measured points.
+pub(super) fn dots(paint: Paint, open: bool) -> String {
+    if open { format!(r#"{} stroke-width="1.2""#, Paint::fill_and_stroke(Paint::Paper, paint)) } else { paint.attributes("fill") }
+}
+
 /// What stands before a legend text.
 #[derive(Clone, Debug)]
 pub(super) enum Swatch {
@@ -34,6 +42,8 @@ pub(super) enum Swatch {
     Moving,
     /// A tinted region.
     Area { paint: Paint },
+    /// Measured points, filled or open.
+    Dots { paint: Paint, open: bool },
     /// A bar.
     Bar { paint: Paint },
 }
@@ -117,6 +127,13 @@ fn swatch(canvas: &mut Canvas, swatch: &Swatch, x: f64, y: f64) {
         Swatch::Area { paint } => {
             let r = Rect::sized(x, y - 6.0, SWATCH, 12.0);
             canvas.rect(&r, &format!(r#"{} fill-opacity="{AREA}""#, paint.attributes("fill")));
+        }
+        Swatch::Dots { paint, open } => {
+            canvas.open(&dots(*paint, *open));
+            for part in [0.2, 0.5, 0.8] {
+                canvas.circle([x + part * SWATCH, y], DOT, "");
+            }
+            canvas.close();
         }
         Swatch::Bar { paint } => canvas.rect(&Rect::sized(x, y - 5.0, SWATCH, 10.0), &paint.attributes("fill")),
         Swatch::Point => {

@@ -9,6 +9,7 @@ mod legend;
 mod part;
 mod place;
 mod plot;
+pub(crate) mod scatter;
 mod scene;
 mod spring;
 mod symbols;

@@ -51,11 +51,24 @@ pub(super) fn look(stroke: Stroke) -> (Paint, f64, &'static str, bool) {
         Stroke::Reference => (Paint::Reference, 1.8, "6 4", false),
         Stroke::Limit => (Paint::Limit, 2.0, "10 5", false),
         Stroke::Area => (Paint::Reference, 0.0, "", false),
+        Stroke::Points => (Paint::Second, 0.0, "", false),
+        Stroke::OpenPoints => (Paint::Third, 0.0, "", false),
+    }
+}
+
+/// What stands for a series in the legend.
+fn swatch(stroke: Stroke) -> Swatch {
+    let (paint, width, dash, squares) = look(stroke);
+    match stroke {
+        Stroke::Area => Swatch::Area { paint },
+        Stroke::Points => Swatch::Dots { paint, open: false },
+        Stroke::OpenPoints => Swatch::Dots { paint, open: true },
+        _ => Swatch::Line { paint, width, dash, squares },
     }
 }
 
 /// Where values lie in the drawing.
-struct Frame<'a> {
+pub(super) struct Frame<'a> {
     plot: &'a Plot,
     area: Rect,
     x: Ticks,
@@ -76,7 +89,7 @@ impl Frame<'_> {
         shown(&self.plot.y, si).map(|v| self.area.y1 - part(v, &self.y) * self.area.height())
     }
 
-    fn at(&self, x: f64, y: f64) -> Option<[f64; 2]> {
+    pub(super) fn at(&self, x: f64, y: f64) -> Option<[f64; 2]> {
         Some([self.at_x(x)?, self.at_y(y)?])
     }
 
@@ -95,8 +108,8 @@ fn axis_title(axis: &Axis) -> String {
     over_unit(&axis.label, &axis.display)
 }
 
-/// Draws a plot.
-pub(super) fn draw(plot: &Plot, size: PlotSize, title: &str, caption: &str) -> Drawing {
+/// The frame of a plot: its axes, and the area between them.
+pub(super) fn frame_of(plot: &Plot, size: PlotSize) -> Frame<'_> {
     let size = size.sane();
     let (xs, ys) = ranges(plot);
     let x = ticks::cover(xs.0, xs.1, whole(size.width / 90.0));
@@ -105,16 +118,31 @@ pub(super) fn draw(plot: &Plot, size: PlotSize, title: &str, caption: &str) -> D
     let half = |label: Option<&String>| 0.5 * label.map_or(0.0, |l| TICK.width(l));
     let left = EDGE + (widest + 10.0).max(half(x.labels.first()));
     let right = EDGE + half(x.labels.last());
-    let y_title = text::wrap(&axis_title(&plot.y), TITLE.size * 1.13, size.width - 2.0 * EDGE);
     let spans = span_rows(plot, &x, left, size.width - right);
     let rows = spans.iter().map(|s| s.row + 1).max().unwrap_or(0);
-    let top = 8.0 + y_title.len() as f64 * 19.0 + 8.0 + rows as f64 * SPAN_ROW;
-    let frame = Frame { plot, area: Rect::sized(left, top, size.width - left - right, size.height), x, y };
+    let top = 8.0 + y_title(plot, size).len() as f64 * 19.0 + 8.0 + rows as f64 * SPAN_ROW;
+    Frame { plot, area: Rect::sized(left, top, size.width - left - right, size.height), x, y }
+}
 
-    let mut canvas = Canvas::default();
-    for (i, line) in y_title.iter().enumerate() {
+fn y_title(plot: &Plot, size: PlotSize) -> Vec<String> {
+    text::wrap(&axis_title(&plot.y), TITLE.size * 1.13, size.width - 2.0 * EDGE)
+}
+
+/// The title of the ordinate, above everything.
+pub(super) fn head(canvas: &mut Canvas, plot: &Plot, size: PlotSize) {
+    for (i, line) in y_title(plot, size.sane()).iter().enumerate() {
         canvas.text(line, [EDGE, 22.0 + 19.0 * i as f64], Anchor::Start, TITLE);
     }
+}
+
+/// Draws a plot.
+pub(super) fn draw(plot: &Plot, size: PlotSize, title: &str, caption: &str) -> Drawing {
+    let size = size.sane();
+    let frame = frame_of(plot, size);
+    let left = frame.area.x0;
+    let spans = span_rows(plot, &frame.x, left, frame.area.x1);
+    let mut canvas = Canvas::default();
+    head(&mut canvas, plot, size);
     grounds(&mut canvas, &frame, &spans);
     grid(&mut canvas, &frame);
     let mut placer = Placer::new(frame.area.grown(-3.0));
@@ -166,7 +194,7 @@ fn ranges(plot: &Plot) -> ((f64, f64), (f64, f64)) {
 }
 
 /// A vertical span with the place of its label.
-struct SpanLabel {
+pub(super) struct SpanLabel {
     x0: f64,
     x1: f64,
     text: String,
@@ -194,7 +222,7 @@ fn span_rows(plot: &Plot, x: &Ticks, left: f64, right: f64) -> Vec<SpanLabel> {
 }
 
 /// What lies under the grid: bands and spans.
-fn grounds(canvas: &mut Canvas, frame: &Frame, spans: &[SpanLabel]) {
+pub(super) fn grounds(canvas: &mut Canvas, frame: &Frame, spans: &[SpanLabel]) {
     let area = &frame.area;
     for s in spans {
         let r = Rect { x0: s.x0, y0: area.y0, x1: s.x1, y1: area.y1 };
@@ -223,7 +251,7 @@ fn grounds(canvas: &mut Canvas, frame: &Frame, spans: &[SpanLabel]) {
     }
 }
 
-fn grid(canvas: &mut Canvas, frame: &Frame) {
+pub(super) fn grid(canvas: &mut Canvas, frame: &Frame) {
     let area = &frame.area;
     let step = |count: usize, length: f64| length / (count.max(2) - 1) as f64;
     let mut lines = Vec::new();
@@ -241,7 +269,7 @@ fn grid(canvas: &mut Canvas, frame: &Frame) {
 }
 
 /// Axis lines, tick labels and the title of the abscissa; returns the place below them.
-fn axes(canvas: &mut Canvas, frame: &Frame, width: f64) -> f64 {
+pub(super) fn axes(canvas: &mut Canvas, frame: &Frame, width: f64) -> f64 {
     let area = &frame.area;
     canvas.open_stroke(Paint::Muted, 1.3, "");
     canvas.segments(&[[[area.x0, area.y0], [area.x0, area.y1]], [[area.x0, area.y1], [area.x1, area.y1]]], "");
@@ -305,6 +333,17 @@ fn lines(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
             for piece in &pieces {
                 canvas.polygon(piece, &format!(r#"{} fill-opacity="{}""#, paint.attributes("fill"), legend::AREA));
             }
+            continue;
+        }
+        if matches!(series.stroke, Stroke::Points | Stroke::OpenPoints) {
+            canvas.open(&legend::dots(paint, series.stroke == Stroke::OpenPoints));
+            for piece in &pieces {
+                for p in piece {
+                    canvas.circle(*p, legend::DOT, "");
+                }
+                placer.add_line(piece, 2.0 * legend::DOT, 1.0);
+            }
+            canvas.close();
             continue;
         }
         canvas.open_stroke(paint, width, &format!(r#"stroke-linejoin="round" {}"#, dashed(dash)));
@@ -421,9 +460,7 @@ fn markers(canvas: &mut Canvas, frame: &Frame, placer: &mut Placer) {
 fn entries(plot: &Plot, beyond: &[Entry]) -> Vec<Entry> {
     let mut out = Vec::new();
     for series in plot.series.iter().filter(|s| !s.label.is_empty()) {
-        let (paint, width, dash, squares) = look(series.stroke);
-        let swatch = if series.stroke == Stroke::Area { Swatch::Area { paint } } else { Swatch::Line { paint, width, dash, squares } };
-        out.push(Entry { swatch, text: series.label.clone() });
+        out.push(Entry { swatch: swatch(series.stroke), text: series.label.clone() });
     }
     out.extend(plot.bands.iter().map(|b| Entry { swatch: Swatch::Band, text: b.label.clone() }));
     out.extend(beyond.iter().cloned());

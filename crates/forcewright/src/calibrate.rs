@@ -1,0 +1,333 @@
+//! From `[measurements]` and `[calibrate]` to parameters with intervals, and a variant of the project that has them.
+
+#[cfg(test)]
+mod coverage;
+mod document;
+mod page;
+mod picture;
+mod points;
+mod wording;
+mod writing;
+
+use std::fmt;
+use std::path::Path;
+
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Explanation, Sources, Span};
+use forcewright_contract::calibration::Wanted;
+use forcewright_contract::project::Files;
+use forcewright_model::{Axis, Report};
+use forcewright_study::calibrate::{
+    Bench, BenchParameter, CalibrateError, Curve, CurveError, Fit, Limits, Measured, Parameter, Plan, Stop, Watch, fit,
+};
+use forcewright_study::evaluator::Evaluator;
+use forcewright_study::sampling::Confidence;
+
+use crate::{Loaded, Refused};
+use points::{Points, REACH};
+use writing::Found;
+
+/// Codes of calibrations beyond those of the project file.
+pub(crate) const CODES: &[Explanation] = &[
+    Explanation {
+        code: "E0907",
+        title: "the design of the file has no curve",
+        text: "A calibration begins with the numbers of the file. That design does not reach the end of its travel, or cannot be built; `forcewright solve` says why. Exit code 3.",
+    },
+    Explanation {
+        code: "W0901",
+        title: "measured points are left out",
+        text: "Points that were measured where the design's curve is not computed, or on the other branch than the one asked for, do not count. Curves are computed from rest to `load.travel` (compliant), over `window` (cam), up to the required torque (cable drive, transmission).",
+    },
+    Explanation {
+        code: "W0902",
+        title: "parameters are not determined",
+        text: "The measured curve hardly changes when these parameters change together as the message says, so that it cannot tell their values: of a modulus of elasticity and a depth it knows the product. The intervals say so too.\n\nTake one of them out of the calibration, give it a `prior`, or measure something else that tells them apart.",
+    },
+    Explanation {
+        code: "W0903",
+        title: "parameters are hardly told apart",
+        text: "The errors of two estimates go together almost entirely: if one is too large, so is the other, or too small. Each interval is right by itself; their combination is known far better than either.",
+    },
+    Explanation {
+        code: "W0904",
+        title: "an estimate rests on its prior",
+        text: "The measurement adds next to nothing to what the file says of this parameter: its interval is that of the `prior`.",
+    },
+    Explanation {
+        code: "W0905",
+        title: "something is not explained",
+        text: "No values of the parameters bring the curve to the measured points: what is left is systematic, as runs of signs or the lack of fit show. The message says where and how much. The estimates absorb as much of it as they can, so they are not to be trusted as material data, and their intervals are too narrow.\n\nWhat is missing may be in the model (joints of finite size: `model.joints = \"overlap\"`, friction, play), on the bench (`bench.offset`, `bench.compliance`), or in a number that is not looked for. Exit code 1.",
+    },
+    Explanation {
+        code: "W0906",
+        title: "an estimate lies at a bound",
+        text: "The measured curve would be met better beyond the range that was allowed. Widen `range` if that is possible; else something else is wrong that this parameter tries to make up for.",
+    },
+    Explanation {
+        code: "W0907",
+        title: "the measurement contradicts a prior",
+        text: "What was measured and the prior differ by more than three standard deviations of their difference. Either the prior was too sure, or the model lacks something that this parameter tries to make up for.",
+    },
+];
+
+/// Why there are no parameters.
+#[derive(Debug)]
+pub enum NoCalibration {
+    /// The project asks for what cannot be done.
+    Refused(Refused),
+    /// The search could not begin.
+    Study(CalibrateError),
+}
+
+impl fmt::Display for NoCalibration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Refused(refused) => f.write_str(&refused.render(false)),
+            Self::Study(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for NoCalibration {}
+
+/// Parameters from a measured curve.
+pub struct Calibrated {
+    /// What was found.
+    pub fit: Fit,
+    /// The unit in which people are shown each parameter.
+    pub units: Vec<String>,
+    /// The same as a factor: SI value of one unit.
+    pub unit_sizes: Vec<f64>,
+    /// The points that counted.
+    pub points: Points,
+    /// Name of the measurement.
+    pub measurement: String,
+    /// Abscissa and ordinate, in the units of the file.
+    pub axes: [Axis; 2],
+    /// Confidence of all intervals.
+    pub confidence: Confidence,
+    /// The variant that has the estimates.
+    pub variant: String,
+    /// The project file with this variant, comments kept; where a place for it was named.
+    pub text: Option<String>,
+    /// The design of the file.
+    pub before: Report,
+    /// What was said about the study.
+    pub diagnostics: Diagnostics,
+    /// The texts that they point into.
+    pub sources: Sources,
+}
+
+/// A calibration that is ready to run.
+struct Ready {
+    evaluator: Box<dyn Evaluator>,
+    wanted: Wanted,
+    points: Points,
+    bench: Bench,
+    axes: [Axis; 2],
+    measurement: String,
+    place: Span,
+}
+
+impl Loaded {
+    /// Looks for the parameters of `[calibrate]` that bring the design's curve to what was measured. With a `target`, the project file
+    /// with a variant that has the estimates is written for that place. The result depends on the project alone: the same bits with any
+    /// number of threads. Told to stop by `watch`, it keeps the best parameters so far.
+    ///
+    /// # Errors
+    /// [`NoCalibration`]: nothing to calibrate or to compare with, data that cannot be read, or a design without a curve.
+    pub fn calibrate(&self, files: &dyn Files, target: Option<&Path>, watch: Watch<'_>) -> Result<Calibrated, NoCalibration> {
+        let mut diagnostics = Diagnostics::default();
+        let before = self.solve(&self.name(), "", &mut |_| true);
+        let ready = self.calibration(&before, &mut diagnostics).filter(|_| !diagnostics.has_errors());
+        let Some(ready) = ready else { return Err(NoCalibration::Refused(self.refused(diagnostics))) };
+        let variant = self.variant_of_estimates();
+        let written = |values: &[f64]| {
+            let Some(target) = target else { return Ok(None) };
+            self.with_estimates((files, target), &variant, &ready.written(values)).map(Some).map_err(NoCalibration::Refused)
+        };
+        let parameters = ready.parameters();
+        // What cannot be written is refused before the work, not after.
+        written(&parameters.iter().map(|p| p.start).collect::<Vec<_>>())?;
+        let section = &self.understood.studies().calibrate;
+        let plan = Plan { loss: section.loss(), confidence: section.confidence(), ..Plan::default() };
+        let found = ready.fitted(&parameters, [&ready.points.y, &ready.points.raw], &plan, watch).map_err(|error| match error {
+            NoFit::NoCurve(error) => self.no_curve(&error, ready.place),
+            NoFit::Study(error) => NoCalibration::Study(error),
+        })?;
+        let values: Vec<f64> = found.parameters.iter().map(|p| p.estimate.value).collect();
+        let text = written(&values)?;
+        let (units, unit_sizes) = wording::units(&ready.wanted);
+        let mut calibrated = Calibrated {
+            fit: found,
+            units,
+            unit_sizes,
+            points: ready.points,
+            measurement: ready.measurement,
+            axes: ready.axes,
+            confidence: plan.confidence,
+            variant,
+            text,
+            before,
+            diagnostics,
+            sources: self.project.sources.clone(),
+        };
+        calibrated.warn(ready.place);
+        Ok(calibrated)
+    }
+
+    fn no_curve(&self, error: &CurveError, place: Span) -> NoCalibration {
+        let mut diagnostics = Diagnostics::default();
+        diagnostics.push(no_curve(place, &error.to_string()));
+        NoCalibration::Refused(self.refused(diagnostics))
+    }
+
+    /// What the sections of the project ask for. `None` after an error.
+    fn calibration(&self, before: &Report, diagnostics: &mut Diagnostics) -> Option<Ready> {
+        let studies = self.understood.studies();
+        let section = &studies.calibrate;
+        let Some(present) = &section.present else {
+            diagnostics.push(
+                Diagnostic::error("E0317", self.project.root, "there is no `[calibrate]`")
+                    .label("from this file")
+                    .help("add `[measurements.curve]` with `file`, `x`, `y`, and `[calibrate]` with `parameters = { \"material.young_modulus\" = {} }`"),
+            );
+            return None;
+        };
+        let place = present.span;
+        let measurement = section.of(&studies.measurements, place, diagnostics)?;
+        let probe = self.understood.evaluator(&[], diagnostics)?;
+        let Some(axes) = axes(&*probe, before) else {
+            diagnostics.push(no_curve(place, "the studies of this design have no curve that its analysis shows"));
+            return None;
+        };
+        let dimensions = [axes[0].dimension, axes[1].dimension];
+        let stations = probe.stations(0);
+        let ascending = stations.first() <= stations.last();
+        let wanted = section.wanted(self.understood.numbers(), dimensions, diagnostics);
+        let bench = measurement.value.bench(dimensions, diagnostics);
+        let record = measurement.record(dimensions, ascending, diagnostics);
+        let (wanted, bench, record) = (wanted?, bench?, record?);
+        let free: Vec<_> = wanted.design.iter().map(|d| d.free.clone()).collect();
+        // What the probe said is said again.
+        *diagnostics = Diagnostics::default();
+        let evaluator = self.understood.evaluator(&free, diagnostics)?;
+        let branch = section.branch.as_ref().map_or("both", |b| b.value);
+        let points = Points::of(&record, &*evaluator, &bench, branch);
+        let (count, least) = (points.x.len(), wanted.design.len() + wanted.bench.len() + 2);
+        let ranges = points.ranges(&record, &axes, branch);
+        if count < least {
+            let named = measurement.value.file.as_ref().map_or(place, |f| f.span);
+            diagnostics.push(
+                Diagnostic::error("E0904", named, format!("{count} of {} points can be compared, {least} are needed", record.x.len()))
+                    .label("measured here")
+                    .help(format!("{ranges}: {REACH}")),
+            );
+            return None;
+        }
+        if points.left_out > 0 {
+            diagnostics.push(
+                Diagnostic::warning(
+                    "W0901",
+                    place,
+                    format!("{} of {} measured points do not count: {ranges}", points.left_out, record.x.len()),
+                )
+                .label("of this calibration")
+                .help(REACH),
+            );
+        }
+        let [mut x, mut y] = axes;
+        [x.display, y.display] = record.units.clone();
+        Some(Ready { evaluator, wanted, points, bench, axes: [x, y], measurement: measurement.name.value.clone(), place })
+    }
+}
+
+/// Why there is no fit.
+enum NoFit {
+    NoCurve(CurveError),
+    Study(CalibrateError),
+}
+
+impl Ready {
+    /// What is looked for, as the search sees it.
+    fn parameters(&self) -> Vec<Parameter> {
+        parameters(&self.wanted, &self.points, &self.bench)
+    }
+
+    /// The curve at the places of the points.
+    fn curve(&self) -> Result<Curve<'_>, CurveError> {
+        let free = self.wanted.bench.iter().map(|b| b.which).collect();
+        Curve::new(&*self.evaluator, self.bench, free, self.points.branches.clone())
+    }
+
+    /// The fit to ordinates at the places of the points, filtered and as measured.
+    fn fitted(&self, parameters: &[Parameter], [y, raw]: [&[f64]; 2], plan: &Plan, watch: Watch<'_>) -> Result<Fit, NoFit> {
+        let model = self.curve().map_err(NoFit::NoCurve)?;
+        let counts: Vec<usize> = self.points.branches.iter().map(|b| b.x.len()).collect();
+        let measured = Measured { x: &self.points.x, y, raw, branches: &counts };
+        fit(&model, parameters, measured, plan, watch).map_err(NoFit::Study)
+    }
+
+    /// Parameters as they are written.
+    fn written(&self, values: &[f64]) -> Found<'_> {
+        let inner = self.evaluator.variables().len();
+        let bench = self.wanted.bench.iter().zip(values[inner..].iter().copied()).collect();
+        Found { design: self.evaluator.numbers(&values[..inner]), bench, measurement: &self.measurement, axes: &self.axes }
+    }
+}
+
+fn no_curve(place: Span, why: &str) -> Diagnostic {
+    Diagnostic::error("E0908", place, why).label("this calibration").help("`forcewright solve` shows the curves of the design")
+}
+
+/// The axes of the curve that studies see: of the analysis, the one with its name, else the first with its ordinate.
+fn axes(evaluator: &dyn Evaluator, report: &Report) -> Option<[Axis; 2]> {
+    let output = evaluator.outputs().first().filter(|o| !evaluator.stations(0).is_empty() && !o.values.is_empty())?;
+    let curves = || report.outcome.curves.iter().filter(|c| c.y.dimension.si_symbol() == output.unit);
+    let named = curves().find(|c| c.name == output.name || output.name.strip_suffix("_up") == Some(c.name));
+    named.or_else(|| curves().next()).map(|c| [c.x.clone(), c.y.clone()])
+}
+
+/// What is looked for, as the search sees it.
+fn parameters(wanted: &Wanted, points: &Points, bench: &Bench) -> Vec<Parameter> {
+    let extent = |v: &[f64]| {
+        let [low, high] = v.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
+        (high - low).max(f64::MIN_POSITIVE)
+    };
+    let (width, height) = (extent(&points.x), extent(&points.y).max(points.y.iter().fold(0.0, |m: f64, y| m.max(y.abs()))));
+    let of_design = wanted.design.iter().map(|d| {
+        let (si, span) = (d.free.number.si, d.free.upper - d.free.lower);
+        // A number that is 0 has no size of its own.
+        let scale = if si.abs() > 0.0 { si.abs() } else { Some(span).filter(|s| s.is_finite()).unwrap_or(1.0) };
+        let limits = Limits { lower: d.free.lower, upper: d.free.upper };
+        Parameter { name: d.free.number.path.clone(), start: si, limits, scale, prior: d.prior }
+    });
+    let of_bench = wanted.bench.iter().map(|b| {
+        let (start, scale, usual) = match b.which {
+            BenchParameter::OffsetX => (bench.offset[0], width, [-width, width]),
+            BenchParameter::OffsetY => (bench.offset[1], height, [-height, height]),
+            BenchParameter::Compliance => (bench.compliance, width / height, [0.0, width / height]),
+        };
+        let or = |typed: f64, usual: f64| if typed.is_finite() { typed } else { usual };
+        let limits = Limits { lower: or(b.limits.lower, usual[0].min(start)), upper: or(b.limits.upper, usual[1].max(start)) };
+        let start = start.clamp(limits.lower, limits.upper);
+        Parameter { name: b.path.to_owned(), start, limits, scale, prior: b.prior }
+    });
+    of_design.chain(of_bench).collect()
+}
+
+impl Calibrated {
+    /// Whether the search came to its end.
+    pub fn converged(&self) -> bool {
+        self.fit.stop == Stop::Converged
+    }
+
+    /// Whether it came to its end, all is determined, within its range, and nothing is left unexplained.
+    pub fn sound(&self) -> bool {
+        let held = self.fit.parameters.iter().any(|p| p.at.is_some());
+        let open = self.fit.parameters.iter().any(|p| p.error.is_infinite());
+        let loose =
+            self.fit.identified.loose.iter().any(|l| l.changes.iter().all(|(i, _)| self.fit.parameters[*i].parameter.prior.is_none()));
+        self.converged() && !held && !open && !loose && !self.fit.residuals.unexplained
+    }
+}

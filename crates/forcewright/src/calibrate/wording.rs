@@ -1,0 +1,220 @@
+//! What was found, in words.
+
+use forcewright_base::diagnostics::{Diagnostic, Span};
+use forcewright_base::units::{Unit, format_number, format_si};
+use forcewright_contract::calibration::Wanted;
+use forcewright_study::calibrate::{Against, Bound, Loose, Stop};
+
+use super::Calibrated;
+
+/// Distance of what was measured from a prior's mean, in standard deviations of the difference, that contradicts it.
+const CONTRADICTION: f64 = 3.0;
+/// Digits of an estimate whose interval is as wide as itself, and at most.
+const DIGITS: [usize; 2] = [2, 12];
+
+/// Symbols in which people are shown parameters, and their sizes in SI.
+pub(super) fn units(wanted: &Wanted) -> (Vec<String>, Vec<f64>) {
+    let of_design = wanted.design.iter().map(|d| {
+        let unit = &d.free.number.unit;
+        (if unit.symbol() == "1" { String::new() } else { unit.pretty() }, unit.to_si(1.0))
+    });
+    let handy = |si: &str| match si {
+        "m" => "mm".to_owned(),
+        other => other.to_owned(),
+    };
+    let of_bench = wanted.bench.iter().map(|b| {
+        let unit = Unit::parse(&handy(&b.unit));
+        unit.map_or_else(|_| (b.unit.clone(), 1.0), |u| (u.pretty(), u.to_si(1.0)))
+    });
+    of_design.chain(of_bench).unzip()
+}
+
+impl Calibrated {
+    /// A value of a parameter in its unit.
+    pub fn show(&self, parameter: usize, si: f64, digits: usize) -> String {
+        let (Some(size), Some(unit)) = (self.unit_sizes.get(parameter), self.units.get(parameter)) else { return String::new() };
+        if si.is_infinite() {
+            return if si > 0.0 { "∞" } else { "−∞" }.to_owned();
+        }
+        let number = format_number(si / size, digits);
+        if unit.is_empty() { number } else { format!("{number} {unit}") }
+    }
+
+    fn name(&self, parameter: usize) -> &str {
+        self.fit.parameters.get(parameter).map_or("", |p| &p.parameter.name)
+    }
+
+    /// Path, value before, estimate, interval, interval of the likelihood, and what is to be said, of each parameter.
+    pub fn rows(&self) -> Vec<[String; 6]> {
+        let each = self.fit.parameters.iter().enumerate();
+        each.map(|(i, found)| {
+            let interval = found.estimate.interval;
+            let digits = digits(found.estimate.value, interval.high - interval.low);
+            let pair = |low: f64, high: f64| format!("{} to {}", self.show(i, low, digits), self.show(i, high, digits));
+            let profile = found.profile.map_or_else(|| "–".to_owned(), |p| pair(p.low, p.high));
+            let said = if let Some(bound) = found.at {
+                match bound {
+                    Bound::Lower => "at its lower bound",
+                    Bound::Upper => "at its upper bound",
+                }
+            } else if found.error.is_infinite() {
+                "not determined"
+            } else if self.fit.identified.on_priors.contains(&i) {
+                "rests on its prior"
+            } else {
+                ""
+            };
+            [
+                found.parameter.name.clone(),
+                self.show(i, found.parameter.start, digits),
+                self.show(i, found.estimate.value, digits),
+                pair(interval.low, interval.high),
+                profile,
+                said.to_owned(),
+            ]
+        })
+        .collect()
+    }
+
+    /// A combination of parameters that hardly moves the curve: `material.young_modulus` +1 %, `design.depth` −1 %.
+    pub(super) fn combination(&self, loose: &Loose) -> String {
+        let one = |(i, change): &(usize, f64)| {
+            let parameter = &self.fit.parameters[*i].parameter;
+            let relative = (parameter.scale - parameter.start.abs()).abs() <= 1e-12 * parameter.scale;
+            let change = 0.01 * change;
+            let sign = if change < 0.0 { "−" } else { "+" };
+            if relative {
+                format!("`{}` {sign}{} %", parameter.name, format_number(100.0 * change.abs() / parameter.scale, 2))
+            } else {
+                format!("`{}` {sign}{}", parameter.name, self.show(*i, change.abs(), 2))
+            }
+        };
+        loose.changes.iter().map(one).collect::<Vec<_>>().join(" with ")
+    }
+
+    /// What is not explained, in one sentence; what supports that nothing is.
+    pub fn residual_verdict(&self) -> String {
+        let residuals = &self.fit.residuals;
+        let (x, y) = (&self.axes[0].display, &self.axes[1].display);
+        let tests = {
+            let lack = residuals.lack.map_or_else(String::new, |l| {
+                let against = match l.against {
+                    Against::Repeats => "repeats",
+                    Against::Smooth => "a smooth curve through the residuals",
+                };
+                let [above, below] = l.degrees;
+                format!("lack of fit against {against}: F({above}, {below}) = {}, p = {}; ", format_number(l.ratio, 3), probability(l.p))
+            });
+            let runs = residuals.runs;
+            let expected = format_number(runs.expected, 3);
+            format!("{lack}{} runs of signs, {expected} expected, p = {}", runs.observed, probability(runs.p))
+        };
+        if !residuals.unexplained {
+            return format!("Nothing systematic is left over the scatter of {} ({tests}).", format_si(self.fit.noise, y, 3));
+        }
+        let place = residuals.stretch.map_or_else(String::new, |s| {
+            let side = if s.mean > 0.0 { "above" } else { "below" };
+            let branch =
+                if self.points.names.len() > 1 { format!(", {}", self.points.names.get(s.branch).unwrap_or(&"")) } else { String::new() };
+            format!(
+                "; from {} to {}{branch}, the measured points lie {} {side} the fitted curve on average",
+                format_si(s.from, x, 4),
+                format_si(s.to, x, 4),
+                format_si(s.mean.abs(), y, 3)
+            )
+        });
+        let size = format_si(residuals.systematic, y, 3);
+        format!(
+            "The parameters do not explain all: {size} is systematic (root mean square), beside a scatter of {}{place} ({tests}).",
+            format_si(residuals.scatter, y, 3)
+        )
+    }
+
+    /// The result in one sentence.
+    pub fn verdict(&self) -> String {
+        let count = self.points.x.len();
+        let state = match &self.fit.stop {
+            Stop::Converged if self.sound() => "The parameters explain the measured curve",
+            Stop::Converged if self.fit.residuals.unexplained => "The parameters do not explain the measured curve",
+            Stop::Converged => "The measured curve does not determine all parameters",
+            Stop::Interrupted => "Interrupted: the best parameters so far",
+            Stop::Stalled | Stop::RoundLimit | Stop::NoStart(_) => "The search did not come to its end",
+        };
+        let size = |si: f64| format_si(si, &self.axes[1].display, 3);
+        if self.fit.residuals.unexplained {
+            return format!("{state}: {count} points, which lie {} off it (root mean square)", size(self.fit.noise));
+        }
+        format!("{state}: {count} points, scatter {}", size(self.fit.noise))
+    }
+
+    /// Says what is not sound about the result.
+    pub(super) fn warn(&mut self, place: Span) {
+        let mut all: Vec<(&'static str, String, &'static str)> = Vec::new();
+        for loose in &self.fit.identified.loose {
+            let held = loose.changes.iter().any(|(i, _)| self.fit.parameters[*i].parameter.prior.is_some());
+            let tail = if held { "; a prior decides" } else { "" };
+            let message = match loose.changes[..] {
+                [(only, _)] => format!("the measurement does not determine `{}`{tail}", self.name(only)),
+                _ => {
+                    format!("the measurement does not determine {}: together they leave the curve as it is{tail}", self.combination(loose))
+                }
+            };
+            all.push(("W0902", message, "take one of them out, or give it a `prior`"));
+        }
+        for (a, b, r) in &self.fit.identified.tied {
+            let message =
+                format!("`{}` and `{}` are hardly told apart: their errors have a correlation of {r:.4}", self.name(*a), self.name(*b));
+            all.push(("W0903", message, "a prior on one of them narrows the other"));
+        }
+        for i in &self.fit.identified.on_priors {
+            all.push(("W0904", format!("the estimate of `{}` rests on its prior", self.name(*i)), "measure what depends on it more"));
+        }
+        for found in &self.fit.parameters {
+            if found.at.is_some() {
+                all.push((
+                    "W0906",
+                    format!("`{}` lies at a bound of its range", found.parameter.name),
+                    "widen `range`, if it may lie beyond",
+                ));
+            }
+            // Were both right, an estimate would lie away from the mean by what the prior's variance loses in it.
+            let moves = |sd: f64| (sd * sd - found.error * found.error).max(1e-6 * sd * sd).sqrt();
+            let away = found.parameter.prior.map_or(0.0, |p| (found.estimate.value - p.mean).abs() / moves(p.sd));
+            if away > CONTRADICTION {
+                let message = format!(
+                    "the measurement contradicts the prior of `{}` by {} standard deviations",
+                    found.parameter.name,
+                    format_number(away, 2)
+                );
+                all.push(("W0907", message, "was the prior too sure, or does the model lack something?"));
+            }
+        }
+        if self.fit.residuals.unexplained {
+            all.push((
+                "W0905",
+                self.residual_verdict(),
+                "do not take the estimates for material data; look for what the model lacks there",
+            ));
+        }
+        for (code, message, help) in all {
+            self.diagnostics.push(Diagnostic::warning(code, place, message).label("this calibration").help(help));
+        }
+    }
+}
+
+/// Digits that show an interval of this width about a value.
+fn digits(value: f64, width: f64) -> usize {
+    let [least, most] = DIGITS;
+    let mut reach = width;
+    let mut digits = least + 1;
+    while reach > 0.0 && reach < value.abs() && digits < most {
+        reach *= 10.0;
+        digits += 1;
+    }
+    digits
+}
+
+/// A probability, short.
+fn probability(p: f64) -> String {
+    if p < 1e-4 { "below 0.0001".to_owned() } else { format_number(p, 2) }
+}
