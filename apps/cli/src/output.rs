@@ -29,6 +29,23 @@ pub(crate) fn json_text(document: &serde_json::Value) -> String {
     out
 }
 
+/// Prints a result: its document for scripts, or a summary for people.
+pub(crate) fn tell(as_json: bool, document: &str, summary: impl FnOnce() -> String) {
+    if as_json {
+        return print(document);
+    }
+    let shown: Vec<_> = summary().lines().map(|line| visible(line).into_owned()).collect();
+    print(&(shown.join("\n") + "\n"));
+}
+
+/// Writes the files of a result and says so; the exit code where that fails.
+pub(crate) fn deliver(folder: &Path, files: &[(String, String)]) -> Result<(), u8> {
+    write_all(folder, files).map_err(|failed| write_failed(&failed, false))?;
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    narrate(&format!("{}\n", visible(&format!("wrote {} in {}", names.join(", "), folder.display()))));
+    Ok(())
+}
+
 /// Prints to standard error.
 pub(crate) fn narrate(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());

@@ -50,22 +50,15 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     };
     output::narrate(&found.diagnostics.render(&found.sources, output::colour_on_stderr()));
     let document = output::json_text(&found.document());
-    if as_json {
-        output::print(&document);
-    } else {
-        let shown: Vec<_> = summary(&found).lines().map(|line| visible(line).into_owned()).collect();
-        output::print(&(shown.join("\n") + "\n"));
-    }
+    output::tell(as_json, &document, || summary(&found));
     if let Some(folder) = out {
         let command = repeat_command("calibrate", file, Some(folder), &choices(matches));
         let page = found.page(&file.display().to_string(), &command);
         let mut files = vec![("report.html".to_owned(), page), ("result.json".to_owned(), document)];
         files.extend(found.text.clone().map(|text| (NAME.to_owned(), text)));
-        if let Err(failed) = output::write_all(folder, &files) {
-            return output::write_failed(&failed, false);
+        if let Err(code) = output::deliver(folder, &files) {
+            return code;
         }
-        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-        output::narrate(&format!("{}\n", visible(&format!("wrote {} in {}", names.join(", "), folder.display()))));
         let solve = format!("forcewright solve {} --variant {}", quote(&folder.join(NAME).display().to_string()), quote(&found.variant));
         output::narrate(&format!("{}\n", visible(&format!("the design with the estimates: {solve}"))));
     }

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use clap::ArgMatches;
-use forcewright::base::text::visible;
 use forcewright::base::units::{Dimension, Quantity};
 use forcewright::model::CheckState;
 use forcewright::{Choices, Comparison, DiskFiles, Loaded, compare};
@@ -46,18 +45,12 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     });
     bar.done();
     let document = output::json_text(&found.document());
-    if as_json {
-        output::print(&document);
-    } else {
-        let shown: Vec<_> = summary(&found).lines().map(|line| visible(line).into_owned()).collect();
-        output::print(&(shown.join("\n") + "\n"));
-    }
+    output::tell(as_json, &document, || summary(&found));
     if let Some(folder) = out {
         let files = [("report.html".to_owned(), found.page(&repeat_command(matches, &files))), ("result.json".to_owned(), document)];
-        if let Err(failed) = output::write_all(folder, &files) {
-            return output::write_failed(&failed, false);
+        if let Err(code) = output::deliver(folder, &files) {
+            return code;
         }
-        output::narrate(&format!("{}\n", visible(&format!("wrote report.html, result.json in {}", folder.display()))));
     }
     match (found.interrupted, found.complete(), found.requirements()) {
         (true, ..) => exit::INTERRUPTED,

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use clap::ArgMatches;
-use forcewright::base::text::visible;
 use forcewright::study::tolerance::ToleranceError;
 use forcewright::{DiskFiles, Loaded, NoTolerance, ToleranceChoices, Toleranced};
 
@@ -44,19 +43,13 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     };
     output::narrate(&found.diagnostics.render(&found.sources, output::colour_on_stderr()));
     let document = output::json_text(&found.document());
-    if as_json {
-        output::print(&document);
-    } else {
-        let shown: Vec<_> = summary(&found).lines().map(|line| visible(line).into_owned()).collect();
-        output::print(&(shown.join("\n") + "\n"));
-    }
+    output::tell(as_json, &document, || summary(&found));
     if let Some(folder) = out {
         let page = found.page(&file.display().to_string(), &repeat_command(matches, file));
         let files = [("report.html".to_owned(), page), ("result.json".to_owned(), document)];
-        if let Err(failed) = output::write_all(folder, &files) {
-            return output::write_failed(&failed, false);
+        if let Err(code) = output::deliver(folder, &files) {
+            return code;
         }
-        output::narrate(&format!("{}\n", visible(&format!("wrote report.html, result.json in {}", folder.display()))));
     }
     if found.study.interrupted {
         exit::INTERRUPTED
