@@ -1,7 +1,7 @@
 //! The parts of a design as a page for people, and as a figure of its report.
 
 use forcewright_base::units::{format_number, format_si};
-use forcewright_model::{Body, Check, CheckState, Coil, Figure, FigureContent, Part, PartSet, Plate, Section, Sense, Turned};
+use forcewright_model::{Body, Check, CheckState, Coil, Figure, FigureContent, Part, PartSet, Plate, Section, Sense, Sheet, Turned};
 use forcewright_report::study::{StudyColumn, StudyPage, StudyPart, StudySection, page};
 
 use super::Exported;
@@ -165,15 +165,7 @@ impl Exported {
         let advice = set.checks.iter().filter_map(|c| Some(StudyPart::Text(format!("{}: {}", c.code, c.advice.as_ref()?))));
         let mut made = vec![table("What the process must be able to make", &checks, set.checks.iter().map(check).collect())];
         made.extend(advice);
-        let sheets: Vec<StudyPart> = set
-            .sheets
-            .iter()
-            .map(|sheet| StudyPart::Table {
-                caption: sheet.caption.clone(),
-                columns: sheet.columns.iter().map(|c| (c.clone(), StudyColumn::Number)).collect(),
-                rows: sheet.rows.clone(),
-            })
-            .collect();
+        let sheets: Vec<StudyPart> = set.sheets.iter().map(sheet).collect();
         let is_made = is_made(set);
         page(&StudyPage {
             kind: if set.parts.len() == 1 { "Part" } else { "Parts" }.to_owned(),
@@ -224,6 +216,14 @@ impl Exported {
             (.., true) => (CheckState::NotAssessed, "Not everything that the process asks for could be assessed".to_owned()),
             _ => (CheckState::Met, "The process can make it, as far as `[process]` asks".to_owned()),
         }
+    }
+}
+
+fn sheet(sheet: &Sheet) -> StudyPart {
+    StudyPart::Table {
+        caption: sheet.caption.clone(),
+        columns: sheet.columns.iter().map(|c| (c.clone(), StudyColumn::Number)).collect(),
+        rows: sheet.rows.clone(),
     }
 }
 
