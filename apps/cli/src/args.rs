@@ -175,7 +175,13 @@ fn compare() -> Command {
     Command::new("compare")
         .about("Mechanisms of any family side by side, in one sheet of common measures")
         .arg(file().num_args(2..=8).help("Project files, two to eight"))
-        .arg(Arg::new("lever").long("lever").value_name("LENGTH").help("Arm that makes a torque of a force, such as \"40 mm\""))
+        .arg(
+            Arg::new("lever")
+                .long("lever")
+                .value_name("LENGTH")
+                .allow_hyphen_values(true)
+                .help("Arm that makes a torque of a force, such as \"40 mm\""),
+        )
         .arg(out("Write report.html and result.json into this folder"))
         .arg(json())
         .after_help(COMPARE_HELP)

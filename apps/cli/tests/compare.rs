@@ -13,7 +13,7 @@ fn two_families_in_one_sheet() {
     std::fs::write(folder.path().join("a.toml"), EXAMPLE).unwrap();
     assert_eq!(run(folder.path(), &["new", "longval"]).code, Some(0));
     let mixed = run(folder.path(), &["compare", "a.toml", "longval.toml"]);
-    assert!(mixed.stdout.contains("Work over the range") && mixed.stdout.contains("`--lever`"), "{}", mixed.stdout);
+    assert!(mixed.stdout.contains("Work of its own over the range") && mixed.stdout.contains("`--lever`"), "{}", mixed.stdout);
     let seen = run(folder.path(), &["compare", "a.toml", "longval.toml", "--lever", "40 mm", "--out", "out", "--json"]);
     let document = seen.json();
     assert_eq!(document["mechanisms"][1]["measures"]["strength"]["unit"], "N");
@@ -31,7 +31,7 @@ fn calls_that_make_no_sense() {
     std::fs::write(folder.path().join("b.toml"), EXAMPLE.replace("1 mm", "1 kg")).unwrap();
     for (arguments, code) in [
         (&["compare", "a.toml"][..], "E0125"),
-        (&["compare", "a.toml", "a.toml", "--lever", "0 mm"], "E0126"),
+        (&["compare", "a.toml", "a.toml", "--lever", "-4 mm"], "E0126"),
         (&["compare", "a.toml", "a.toml", "--lever", "4 N"], "E0126"),
         (&["compare", "a.toml", "b.toml", "--out", "out"], "E0201"),
     ] {

@@ -347,13 +347,16 @@ pub struct Free {
     pub upper: f64,
 }
 
+/// Where numbers stand that a search may change.
+const SEARCHED: &[&str] = &["design", "motor"];
+
 impl Optimise {
     /// The numbers that may change, each once, in the order of the design. Only the design may change, and the motor that is chosen for it:
     /// what is required, what it is made of and what happens to it stays.
     pub fn free(&self, numbers: &[Number], diagnostics: &mut Diagnostics) -> Vec<Free> {
         let mut found: Vec<Option<Free>> = vec![None; numbers.len()];
         for member in &self.variables {
-            for index in chosen(&member.name, &["design", "motor"], numbers, diagnostics) {
+            for index in chosen(&member.name, SEARCHED, numbers, diagnostics) {
                 if let Some(free) = freedom(&member.value, &numbers[index], member.name.span, diagnostics) {
                     // The later, usually the narrower pattern, wins.
                     found[index] = Some(free);
@@ -424,7 +427,8 @@ impl Optimise {
     pub fn sized(&self, numbers: &[Number], diagnostics: &mut Diagnostics) -> Vec<Sized> {
         let mut found: Vec<Option<Sized>> = vec![None; numbers.len()];
         for member in &self.variables {
-            for index in chosen(&member.name, &["design"], numbers, diagnostics) {
+            // What a pattern lacks is said where ranges are read.
+            for index in chosen(&member.name, SEARCHED, numbers, &mut Diagnostics::default()) {
                 // As with ranges, the later pattern wins.
                 found[index] =
                     sizes(&member.value, &numbers[index], diagnostics).map(|sizes| Sized { path: numbers[index].path.clone(), sizes });

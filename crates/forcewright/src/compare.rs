@@ -41,6 +41,8 @@ pub struct Compared {
     pub mass: Stated,
     /// Pieces drawn.
     pub pieces: Stated,
+    /// Whether it is seen through the lever.
+    pub levered: bool,
     /// What it gives over its travel, seen through the lever; `None` where that is another's.
     pub curve: Option<Curve>,
 }
@@ -104,7 +106,10 @@ impl Compared {
                 let kinds = set.parts.iter().filter(|p| p.count > 0).count();
                 let counted = format!("drawn, of {kinds} {}; what is bought is not counted", if kinds == 1 { "kind" } else { "kinds" });
                 (
-                    Stated::new(known, &format!("of the parts drawn{all}"), "no density of a part is known"),
+                    Stated {
+                        at_least: !without.is_empty(),
+                        ..Stated::new(known, &format!("of the parts drawn{all}"), "no density of a part is known")
+                    },
                     Stated::new(Some(set.pieces() as f64), &counted, ""),
                 )
             }
@@ -124,6 +129,7 @@ impl Compared {
             title: outcome.title,
             requirements,
             not_met: outcome.checks.iter().filter(missed).map(|c| (c.code, c.title.clone())).collect(),
+            levered: false,
             curve: given.then(|| outcome.curves.into_iter().find(|c| action_of(c).is_some())).flatten(),
             status: outcome.status,
             duty: analysis.duty,
@@ -133,6 +139,7 @@ impl Compared {
     }
 
     fn seen_as(&mut self, action: Action, lever_m: f64) {
+        self.levered = self.duty.as_ref().is_some_and(|d| d.action != action);
         self.duty = self.duty.take().map(|duty| duty.seen_as(action, lever_m));
         if let Some(curve) = &mut self.curve {
             let (x, y) = match (action_of(curve), action) {
@@ -177,6 +184,9 @@ fn unit(dimension: Dimension) -> Unit {
     Unit::parse(symbol).unwrap_or_else(|_| Unit::si(dimension))
 }
 
+/// A turn that an arm does not make of a travel in proportion: 30°.
+const LARGE_RAD: f64 = std::f64::consts::FRAC_PI_6;
+
 /// A measure of one mechanism with its quantity.
 struct Cell {
     dimension: Dimension,
@@ -189,35 +199,28 @@ type Measure = (&'static str, &'static str, fn(&Compared, &Duty) -> Cell);
 const MEASURES: &[Measure] = &[
     ("strength", "Force or torque", |_, d| cell(axes(d.action)[1], &d.strength)),
     ("range", "Travel or turn", |_, d| cell(axes(d.action)[0], &d.range)),
-    ("work", "Work over the range", |_, d| {
-        derived(Dimension::Energy, d.work_j(), "force × travel, or torque × turn", &[&d.strength, &d.range])
-    }),
+    ("work", "Work of its own over the range", |_, d| cell(Dimension::Energy, &d.work)),
     ("variation", "Variation over the range, ±", |_, d| cell(Dimension::Ratio, &d.variation)),
     ("stiffness", "Stiffness", |_, d| {
         cell(if d.action == Action::Force { Dimension::Stiffness } else { Dimension::RotationalStiffness }, &d.stiffness)
     }),
     ("loss", "Loss, one way", |_, d| cell(Dimension::Ratio, &d.loss)),
-    ("volume", "Volume of its box", |_, d| {
-        let volume = Stated { value: d.volume_m3(), basis: d.box_basis.clone() };
-        cell(Dimension::Volume, &volume)
-    }),
+    ("volume", "Volume of its box", |_, d| cell(Dimension::Volume, &boxed(d))),
     ("mass", "Mass", |c, _| cell(Dimension::Mass, &c.mass)),
     ("pieces", "Pieces", |c, _| cell(Dimension::Ratio, &c.pieces)),
     ("work_per_volume", "Work over volume", |_, d| {
-        let boxed = Stated { value: d.volume_m3(), basis: d.box_basis.clone() };
-        let density = d.work_j().zip(d.volume_m3()).map(|(work, volume)| work / volume);
-        derived(Dimension::Stress, density, "work over the range per volume of the box", &[&d.strength, &d.range, &boxed])
+        let density = d.work.value.zip(d.volume_m3()).map(|(work, volume)| work / volume);
+        let why = if d.work.value.is_none() { &d.work.basis } else { &d.box_basis };
+        cell(Dimension::Stress, &Stated::new(density, "work of its own per volume of the box", why))
     }),
 ];
 
-fn cell(dimension: Dimension, stated: &Stated) -> Cell {
-    Cell { dimension, stated: stated.clone() }
+fn boxed(duty: &Duty) -> Stated {
+    Stated::new(duty.volume_m3(), &duty.box_basis, &duty.box_basis)
 }
 
-/// What follows from others; without one of them, why that is not there.
-fn derived(dimension: Dimension, value: Option<f64>, basis: &str, from: &[&Stated]) -> Cell {
-    let why = from.iter().find(|s| s.value.is_none()).map_or("", |s| s.basis.as_str());
-    Cell { dimension, stated: Stated::new(value, basis, why) }
+fn cell(dimension: Dimension, stated: &Stated) -> Cell {
+    Cell { dimension, stated: stated.clone() }
 }
 
 impl Cell {
@@ -227,6 +230,7 @@ impl Cell {
             "pieces" => format_number(value, 6),
             // A volumetric density of work is written as one.
             "work_per_volume" => format!("{} J/L", format_number(1e-3 * value, 3)),
+            _ if self.stated.at_least => format!("≥ {}", format_si(value, &unit(self.dimension), 4)),
             _ => format_si(value, &unit(self.dimension), 4),
         }
     }
@@ -257,9 +261,12 @@ impl Comparison {
 
     fn boxes(&self) -> MeasureRow {
         let text = |m: &Compared| {
-            let sides = m.duty.as_ref().and_then(Duty::sorted_box_m)?;
-            let millimetres = sides.map(|m| format_number(1e3 * m, 4));
-            Some(format!("{} mm", millimetres.join(" × ")))
+            let sides: Vec<String> = m.duty.as_ref()?.sorted_box_m().iter().map(|m| format_number(1e3 * m, 4)).collect();
+            match sides.len() {
+                0 => None,
+                3 => Some(format!("{} mm", sides.join(" × "))),
+                _ => Some(format!("{} × ? mm", sides.join(" × "))),
+            }
         };
         MeasureRow {
             name: "box",
@@ -307,9 +314,19 @@ impl Comparison {
         if self.mixed() {
             all.push("Forces stand beside torques: `--lever` with the length of an arm makes them of one kind.".to_owned());
         }
-        if let Some(lever_m) = self.lever_m {
+        if let Some(lever_m) = self.lever_m.filter(|_| self.mechanisms.iter().any(|m| m.levered)) {
             let lever = format_si(lever_m, &unit(Dimension::Length), 4);
             all.push(format!("Seen through a lever of {lever}: torque = force × lever, turn = travel / lever; the lever itself has no size, mass or loss."));
+            let turn = |m: &Compared| {
+                let range = m.duty.as_ref().filter(|_| m.levered)?.range.value?;
+                Some(if m.duty.as_ref()?.action == Action::Torque { range } else { range / lever_m })
+            };
+            if self.mechanisms.iter().filter_map(turn).any(|turn| turn > LARGE_RAD) {
+                all.push(
+                    "A turn beyond 30° is not small: an arm does not give it so, a rack or a belt on a drum of this radius does."
+                        .to_owned(),
+                );
+            }
         }
         all
     }

@@ -138,3 +138,15 @@ fn what_cannot_be_rounded_is_refused() {
     let robust = optimised(&text).err().unwrap();
     assert!(robust.0 == "E0922" && robust.1.contains("in spite of scatter"), "{robust:?}");
 }
+
+/// The motor is chosen for the design: its reduction comes in sizes as well.
+#[test]
+fn a_reduction_that_can_be_bought() {
+    let hand = include_str!("../../../examples/lavt/prosthetic-hand.toml");
+    let search = "[optimise]\nobjective = { minimise = \"grasp_time\" }\n[optimise.variables]\n";
+    let found = optimised(&format!("{hand}\n{search}\"motor.reduction\" = {{ range = [10, 40], step = 5 }}\n")).unwrap();
+    let rounded = found.rounded.as_ref().unwrap();
+    let (path, before, after) = &rounded.numbers[0];
+    let steps = (after - 10.0) / 5.0;
+    assert!(path == "motor.reduction" && (steps - steps.round()).abs() < 1e-9 && (after - before).abs() < 5.0, "{rounded:?}");
+}

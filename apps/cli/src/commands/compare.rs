@@ -60,9 +60,12 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     }
 }
 
+/// Arms that somebody could make, m.
+const LEVERS_M: std::ops::RangeInclusive<f64> = 1e-6..=1e3;
+
 fn lever_m(text: &str) -> Result<f64, String> {
-    let length = Quantity::parse(text, Dimension::Length).ok().map(|q| q.si).filter(|m| m.is_finite() && *m > 0.0);
-    length.ok_or_else(|| format!("`--lever {text}` is not a length above zero"))
+    let length = Quantity::parse(text, Dimension::Length).ok().map(|q| q.si).filter(|m| (LEVERS_M).contains(m));
+    length.ok_or_else(|| format!("`--lever {text}` is not a length from 1 µm to 1 km"))
 }
 
 /// The command that makes this result again.

@@ -13,10 +13,17 @@ impl Comparison {
     pub fn document(&self) -> Value {
         let mechanisms = self.mechanisms.iter().map(|m| {
             let measure = |(name, _, of): &super::Measure| {
-                let cell = of(m, m.duty.as_ref()?);
-                Some(((*name).to_owned(), json!({ "value": cell.stated.value, "unit": cell.unit(name), "basis": cell.stated.basis })))
+                let stated = m.duty.as_ref().map_or_else(
+                    || json!({ "value": null, "basis": m.status.message }),
+                    |duty| {
+                        let cell = of(m, duty);
+                        let stated = &cell.stated;
+                        json!({ "value": stated.value, "unit": cell.unit(name), "basis": stated.basis, "at_least": stated.at_least })
+                    },
+                );
+                ((*name).to_owned(), stated)
             };
-            let measures: Map<String, Value> = MEASURES.iter().filter_map(measure).collect();
+            let measures: Map<String, Value> = MEASURES.iter().map(measure).collect();
             json!({
                 "file": m.input_name,
                 "input_sha256": m.input_sha256,

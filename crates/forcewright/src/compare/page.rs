@@ -112,6 +112,8 @@ impl Comparison {
             Some(Series { label, x: branch.x.iter().map(|x| x - from).collect(), y: branch.y.clone(), stroke })
         });
         let series: Vec<Series> = series.collect();
+        let all = self.mechanisms.iter().filter(|m| m.curve.as_ref().and_then(action_of) == Some(action)).count();
+        let left = if all > series.len() { format!(" The first {} of {all} curves.", series.len()) } else { String::new() };
         let [along, across] = axes(action);
         let axis = |name: &'static str, label: &str, dimension: Dimension| Axis {
             name,
@@ -123,7 +125,7 @@ impl Comparison {
         (series.len() > 1).then(|| Figure {
             id: "curves",
             title: format!("{y} over {}", x.to_lowercase()),
-            caption: "Each from the beginning of its own travel; where there are several branches, the first.".to_owned(),
+            caption: format!("Each over its whole travel from its beginning, with friction where it is known (up); the sheet is without friction and over the stretch that counts.{left}"),
             content: FigureContent::Plot(Plot {
                 x: axis("travel", x, along),
                 y: axis("strength", y, across),

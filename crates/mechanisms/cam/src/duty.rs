@@ -17,26 +17,26 @@ pub(crate) struct Given {
     pub(crate) window: [f64; 2],
     /// Travel and force without friction there.
     pub(crate) curve: Vec<[f64; 2]>,
-    pub(crate) box_m: Option<[f64; 3]>,
+    /// Arm of the rolling resistance, m.
+    pub(crate) arm_m: f64,
+    pub(crate) box_m: Vec<f64>,
     pub(crate) box_basis: &'static str,
 }
 
 /// What the slider gives.
 pub(crate) fn duty(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Duty {
-    let braces_m = 2.0 * design.making.brace_thickness_m;
-    let depth_m = design.drawn_thickness_m() + braces_m;
-    let sides = measured.get("width").zip(measured.get("height")).map(|(width, height)| [width, height, depth_m]);
+    let sides = measured.get("width").zip(measured.get("height")).map(|(width, height)| vec![width, height]);
     let given = Given {
         action: Action::Force,
         name: "force",
         window: behaviour.window_m,
         curve: behaviour.window.iter().map(|s: &Station| [s.travel_m, s.still.force_n]).collect(),
-        box_m: sides,
-        box_basis: if sides.is_some() {
-            "rollers, braces and slider's joint over the stroke, as deep as cam and braces are drawn; springs stand beyond it where they are wider"
-        } else {
-            "the mechanism does not get through its stroke"
+        arm_m: design.built.arm_m,
+        box_basis: match sides {
+            Some(_) => "rollers, braces and slider's joint over the stroke; how deep it is with its springs is not known",
+            None => "the mechanism does not get through its stroke",
         },
+        box_m: sides.unwrap_or_default(),
     };
     given.duty(measured)
 }
@@ -54,15 +54,19 @@ impl Given {
         let slope = |pair: &[[f64; 2]]| ((pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).abs();
         let steepest =
             mean.map(|_| if exact { 0.0 } else { self.curve.windows(2).filter(|p| p[1][0] > p[0][0]).map(slope).fold(0.0, f64::max) });
-        let loss = mean.zip(get("up_mean")).map(|(mean, up)| 1.0 - mean / up);
+        let loss = mean.zip(get("up_mean")).filter(|_| self.arm_m > 0.0).map(|(mean, up)| 1.0 - mean / up);
+        let rolls = if self.arm_m > 0.0 { STOPPED } else { "no rolling resistance is given" };
+        let area = |pair: &[[f64; 2]]| 0.5 * (pair[1][0] - pair[0][0]) * (pair[0][1] + pair[1][1]);
+        let work = mean.map(|_| self.curve.windows(2).map(area).sum());
         let name = self.name;
         Duty {
             action: self.action,
             strength: Stated::new(mean, &format!("mean of the {name} without friction over the window"), STOPPED),
             range: Stated::new(mean.map(|_| self.window[1] - self.window[0]), "the window", STOPPED),
+            work: Stated::new(work, &format!("integral of the {name} without friction over the window"), STOPPED),
             variation: Stated::new(variation, &format!("of the {name} without friction over the window"), STOPPED),
             stiffness: Stated::new(steepest, &format!("steepest slope of the {name} without friction over the window"), STOPPED),
-            loss: Stated::new(loss, "rolling resistance, against the springs: 1 − mean/mean up", STOPPED),
+            loss: Stated::new(loss, "rolling resistance alone, against the springs: 1 − mean/mean up", rolls),
             box_m: self.box_m,
             box_basis: self.box_basis.to_owned(),
         }

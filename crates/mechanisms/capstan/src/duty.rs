@@ -22,6 +22,7 @@ pub(crate) fn duty(design: &Design, measured: &Measured) -> Duty {
         action: Action::Torque,
         strength: Stated::new(strength, basis, "no torque is asked for, and the cables never slip"),
         range: Stated::new(Some(design.built.travel_rad), "travel of the output", ""),
+        work: Stated::none("none of its own: it passes on what its input gives"),
         variation: Stated::none("it passes on what its input gives"),
         stiffness: Stated::new(
             get("stiffness_tangent_output"),
@@ -33,7 +34,7 @@ pub(crate) fn duty(design: &Design, measured: &Measured) -> Duty {
             "from input to output under the torque asked for",
             "bearings or cables are given without their losses",
         ),
-        box_m: sides,
+        box_m: sides.map_or_else(Vec::new, Vec::from),
         box_basis: if sides.is_some() { "both drums with their cables, without bearings and frame" } else { "the drums have no length" }
             .to_owned(),
     }

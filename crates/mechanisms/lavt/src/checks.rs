@@ -476,7 +476,7 @@ impl Context<'_> {
     fn grasp(&self) -> Option<Check> {
         self.behaviour.grasp.as_ref()?;
         let limit = wanted_force_n(self.design)?;
-        let base = self.base("LAVT022", "force", "Force of the grasp", "grasp_force");
+        let base = self.base("LAVT022", "grasp", "Force of the grasp", "grasp_force");
         let fix = "the motor stalls or the clutch slips below it: a larger `motor.reduction`, voltage or limit of the current".to_owned();
         let basis = "force on the object in the end of the closing, against `hand.force`";
         Some(Comparison { limit: Some(limit), fix, basis: basis.to_owned(), ..base }.judge())

@@ -16,6 +16,7 @@ pub(crate) fn duty(measured: &Measured) -> Duty {
             "no torque is asked for at the input",
         ),
         range: Stated::none("it turns without end"),
+        work: Stated::none("none of its own: it passes on what its input gives"),
         variation: Stated::none("it passes on what its input gives, in two modes"),
         stiffness: Stated::none("it is not modelled"),
         loss: Stated::new(
@@ -23,7 +24,7 @@ pub(crate) fn duty(measured: &Measured) -> Duty {
             "from input to output with the torque asked for at the input",
             "no torque is asked for at the input",
         ),
-        box_m: sides,
-        box_basis: "the cylinder of metrics `outer_diameter` and `length`, in a box".to_owned(),
+        box_m: sides.map_or_else(Vec::new, Vec::from),
+        box_basis: "the box around the cylinder of metrics `outer_diameter` and `length`: a quarter more than the cylinder".to_owned(),
     }
 }

@@ -234,9 +234,9 @@ impl Measuring for Transmissions {
         // What the checks ask for over friction and tolerances: not of the paper's model, which knows neither, nor where all is drawn.
         let always = design.source == Source::Corrected && design.scatters();
         let all = match name {
-            "transition_torque_output" => vec![late("transition_torque"), early("transition_torque")],
-            "transition_torque_output_low" if always => vec![late("transition_torque_always")],
-            "transition_torque_output_high" if always => vec![early("transition_torque_always")],
+            "transition_torque_output" => vec![late("transition_torque_min"), early("transition_torque_max")],
+            "transition_torque_output_low" if always => vec![late("transition_torque_min_always")],
+            "transition_torque_output_high" if always => vec![early("transition_torque_max_always")],
             "output_torque_max" => vec![output("output_torque")],
             "output_torque_max_low" if always => vec![output("output_torque_always")],
             "speed_drop" => vec![required.speed_drop.map(|r| at_most(r, "speed_drop", "requirements.speed_drop.max"))],
@@ -250,7 +250,7 @@ impl Measuring for Transmissions {
             "motor_speed_max" => {
                 vec![design.motor.as_ref().and_then(|m| m.max_rad_per_s).map(|most| at_most(most, "motor_speed", "motor.max_speed"))]
             }
-            "grasp_force" => vec![wanted_force_n(design).map(|n| at_least(n, "force", "hand.force"))],
+            "grasp_force" => vec![wanted_force_n(design).map(|n| at_least(n, "grasp", "hand.force"))],
             _ => Vec::new(),
         };
         all.into_iter().flatten().collect()

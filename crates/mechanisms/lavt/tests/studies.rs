@@ -103,7 +103,7 @@ fn a_search_may_choose_the_reduction_of_the_motor() {
     let task = understood.task(&free, Purpose::Search, &mut said).unwrap_or_else(|| panic!("{:?}", said.in_file_order()));
     assert!(said.in_file_order().is_empty() && task.title.contains("grasp_time"), "{}", task.title);
     let limits: Vec<_> = task.limits.iter().map(|l| l.name.as_str()).collect();
-    assert!(["closing_time", "peak_current", "output_torque_always", "force"].iter().all(|name| limits.contains(name)), "{limits:?}");
+    assert!(["closing_time", "peak_current", "output_torque_always", "grasp"].iter().all(|name| limits.contains(name)), "{limits:?}");
 }
 
 /// A study that draws hub and spring sees each draw as it is, not the worst corner about it.

@@ -19,6 +19,12 @@ const LONGEST_SETTLING: usize = 50;
 /// Change of the displacement from cycle to cycle at which a loop counts as closed, over its width.
 const CLOSED: f64 = 1e-12;
 
+/// How far from the last state a guess may be.
+const FARTHEST: f64 = 1.0;
+
+/// How far above a guess the logarithm of a tension is looked for.
+const BELIEVED: f64 = 0.5;
+
 /// States that tell where to look for the next.
 const TRAIL: usize = 3;
 
@@ -135,15 +141,23 @@ impl Ahead<'_> {
         }
         // The span alone gives the largest change of the tension.
         let bound = self.from_ratio + missing_m / self.span_m;
-        // A guess needs no close bound: `ln(1 + u)` is at most `u`.
-        let high = || if guess.is_some() { self.from + (bound / self.from_ratio - 1.0) } else { ln(bound) };
-        let (low, high) = if missing_m > 0.0 { (self.from, high()) } else { (LOOSE_LOG, self.from) };
-        // With a guess well inside, the side is not loose.
-        if missing_m < 0.0 && guess.is_none_or(|log| log < TAUT_LOG) && self.elongation_m(LOOSE_LOG).0 >= elongation_m {
-            return LOOSE_LOG;
+        let root = |low: f64, high: f64, start: f64| increasing_root(|log| self.missing(log, elongation_m), low, high, start);
+        if missing_m < 0.0 {
+            // With a guess well inside, the side is not loose.
+            if guess.is_none_or(|log| log < TAUT_LOG) && self.elongation_m(LOOSE_LOG).0 >= elongation_m {
+                return LOOSE_LOG;
+            }
+            let start = guess.unwrap_or_else(|| if bound > 0.0 { ln(bound) } else { 0.5 * (LOOSE_LOG + self.from) });
+            return root(LOOSE_LOG, self.from, start);
         }
-        let start = guess.unwrap_or_else(|| if bound > 0.0 { ln(bound) } else { 0.5 * (low + high) });
-        increasing_root(|log| self.missing(log, elongation_m), low, high, start)
+        // From far above the root Newton's method comes down by one at a time, so a guess is believed a little way around itself only.
+        if let Some(near) = guess.map(|log| log + BELIEVED).filter(|near| *near > self.from) {
+            let found = root(self.from, near, near - BELIEVED);
+            if found < near - 0.1 * BELIEVED {
+                return found;
+            }
+        }
+        root(self.from, ln(bound), ln(bound))
     }
 
     fn missing(&self, log: f64, elongation_m: f64) -> (f64, f64) {
@@ -366,10 +380,13 @@ impl History {
         let mut passed: Vec<Passed> = Vec::with_capacity(TRAIL + 1);
         for displacement_m in displacements_m {
             finite("displacement_m", *displacement_m)?;
-            let guess = if passed.len() < 2 {
-                [None; 2]
-            } else {
-                ahead_of(&passed, *displacement_m).map(|log| Some(log).filter(|l| l.is_finite()))
+            let guess = match passed.as_slice() {
+                [.., there] if passed.len() > 1 => {
+                    let ahead = ahead_of(&passed, *displacement_m);
+                    // Beyond that the polynomial of the last few is a fancy.
+                    [0, 1].map(|k| Some(ahead[k]).filter(|log| (log - there.logs[k]).abs() <= FARTHEST))
+                }
+                _ => [None; 2],
             };
             let (step, here) = self.step_to(&sides, *displacement_m, guess);
             steps.push(step);
