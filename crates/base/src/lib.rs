@@ -3,6 +3,7 @@
 pub mod dense;
 pub mod diagnostics;
 pub mod fits;
+pub mod general;
 pub mod inertia;
 pub mod maths;
 pub mod orthogonal;

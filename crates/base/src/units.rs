@@ -10,6 +10,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 use crate::fits::{Fit, FitError};
+use crate::general::{General, GeneralError};
 
 /// Exponents of kg, m, s, A, K, rad and of the energy mark.
 type Exponents = [i8; 7];
@@ -440,6 +441,8 @@ pub enum Tolerance {
     Symmetric(f64),
     /// ISO 286 fit on a diameter, such as `h7`.
     Fit(Fit),
+    /// General tolerance of a length, such as `ISO 2768-m`.
+    General(General),
 }
 
 impl Tolerance {
@@ -448,6 +451,34 @@ impl Tolerance {
         match self {
             Self::Symmetric(half) => Some([-half, *half]),
             Self::Fit(fit) => fit.deviations_m(nominal_si).ok(),
+            Self::General(general) => general.half_width_m(nominal_si).ok().map(|half| [-half, half]),
+        }
+    }
+
+    /// What stands behind a value and its unit, with so many digits of a half width: ` ± 0.02 mm`, ` h7`, ` ISO 2768-m`.
+    pub fn suffix(&self, unit: &Unit, digits: usize) -> String {
+        match self {
+            Self::Symmetric(half) => format!(" ± {}", format_si(*half, unit, digits)),
+            Self::Fit(fit) => format!(" {fit}"),
+            Self::General(general) => format!(" {general}"),
+        }
+    }
+
+    /// The values for which one with a name is given, SI, and whether the first is only a bound; `None` where there is no such limit.
+    pub fn nominals_si(&self) -> Option<([f64; 2], bool)> {
+        match self {
+            Self::Symmetric(_) => None,
+            Self::Fit(fit) => fit.diameters_m().map(|all| (all, true)),
+            Self::General(general) => Some((general.lengths_m(), general.begins_above())),
+        }
+    }
+
+    /// Of the tolerances of its kind that have names, the coarsest whose zone about a nominal value is no wider than this, both SI.
+    pub fn coarsest(&self, nominal_si: f64, width_si: f64) -> Option<Self> {
+        match self {
+            Self::Symmetric(_) => None,
+            Self::Fit(fit) => fit.coarsest(nominal_si, width_si).map(Self::Fit),
+            Self::General(_) => General::coarsest(nominal_si, 0.5 * width_si).map(Self::General),
         }
     }
 }
@@ -482,6 +513,8 @@ pub enum QuantityError {
     Tolerance(String),
     /// What stands as a fit is none, or none of this diameter: as typed, and why.
     Fit(String, FitError),
+    /// What stands as a general tolerance is none, or none of this length: as typed, and why.
+    General(String, GeneralError),
 }
 
 impl Quantity {
@@ -490,7 +523,7 @@ impl Quantity {
         Self { si, unit: Unit::si(dimension), tolerance: None }
     }
 
-    /// Reads `"0.85 mm"`, `"0.85 mm ± 0.02 mm"`, `"0.85 ± 0.02 mm"`, `"17.6 mm h7"`, `"5 %"`, `"0.12 +/- 0.03"`.
+    /// Reads `"0.85 mm"`, `"0.85 mm ± 0.02 mm"`, `"0.85 ± 0.02 mm"`, `"17.6 mm h7"`, `"30 mm ISO 2768-m"`, `"5 %"`, `"0.12 +/- 0.03"`.
     ///
     /// # Errors
     /// [`QuantityError`] says what is wrong; the caller knows the place.
@@ -521,6 +554,15 @@ impl Quantity {
 
     fn parse_nominal(text: &str, dimension: Dimension) -> Result<Self, QuantityError> {
         let (digits, unit_text) = split_number(text)?;
+        if dimension == Dimension::Length
+            && let Some((unit, class)) = General::split(unit_text)
+        {
+            let mut quantity = Self::build(digits, unit.trim_end(), dimension)?;
+            let found = General::parse(class).and_then(|general| general.half_width_m(quantity.si).map(|_| general));
+            let wrong = |why| QuantityError::General(unit_text[unit.len()..].to_owned(), why);
+            quantity.tolerance = Some(Tolerance::General(found.map_err(wrong)?));
+            return Ok(quantity);
+        }
         if dimension == Dimension::Length
             && let Some((unit, word)) = unit_text.rsplit_once(char::is_whitespace)
             && Fit::looks_like(word)
@@ -582,11 +624,7 @@ impl fmt::Display for Quantity {
     /// As typed: value, unit, tolerance.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&with_symbol(self.unit.decimal(self.si), &self.unit))?;
-        match &self.tolerance {
-            None => Ok(()),
-            Some(Tolerance::Symmetric(half)) => write!(f, " ± {}", format_si(*half, &self.unit, 12)),
-            Some(Tolerance::Fit(fit)) => write!(f, " {fit}"),
-        }
+        self.tolerance.map_or(Ok(()), |tolerance| f.write_str(&tolerance.suffix(&self.unit, 12)))
     }
 }
 

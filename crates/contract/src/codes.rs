@@ -88,7 +88,7 @@ pub const CODES: &[Explanation] = &[
     code(
         "E0207",
         "not a tolerance",
-        "After `±` (or `+/-`) stands a positive half width in the same quantity, or a percentage: `0.85 mm ± 0.02 mm`, `0.85 mm ± 2 %`. Diameters also take ISO 286 fits: `17.6 mm h7`.",
+        "After `±` (or `+/-`) stands a positive half width in the same quantity, or a percentage: `0.85 mm ± 0.02 mm`, `0.85 mm ± 2 %`. Lengths also take general tolerances, `30 mm ISO 2768-m`, and diameters ISO 286 fits, `17.6 mm h7`.",
     ),
     code(
         "E0208",
@@ -97,8 +97,8 @@ pub const CODES: &[Explanation] = &[
     ),
     code(
         "E0209",
-        "not an ISO 286 fit",
-        "A fit is a position and a grade of ISO 286-1: `h7`, `js6`, `JS9`; capitals are positions of holes, small letters of shafts. Positions from `a` to `zc` (without `cd`, `ef`, `fg`) and grades 01, 0 and 1 to 18 are known for diameters up to 500 mm. Not every position exists at every diameter and with every grade: `t6` begins above 24 mm, `J9` does not exist.\n\nThe fit stands behind the nominal diameter: `17.6 mm h7` is made between 17.582 mm and 17.6 mm. An analysis takes the nominal diameter; a tolerance study scatters about the middle of the zone. Where no fit says what is meant, write a half width: `17.591 mm ± 0.009 mm`.",
+        "not a fit of ISO 286, nor a tolerance of ISO 2768",
+        "A fit is a position and a grade of ISO 286-1: `h7`, `js6`, `JS9`; capitals are positions of holes, small letters of shafts. Positions from `a` to `zc` (without `cd`, `ef`, `fg`) and grades 01, 0 and 1 to 18 are known for diameters up to 500 mm. Not every position exists at every diameter and with every grade: `t6` begins above 24 mm, `J9` does not exist.\n\nThe fit stands behind the nominal diameter: `17.6 mm h7` is made between 17.582 mm and 17.6 mm. An analysis takes the nominal diameter; a tolerance study scatters about the middle of the zone. Where no fit says what is meant, write a half width: `17.591 mm ± 0.009 mm`.\n\nAny length takes a general tolerance of ISO 2768-1, table 1, as well: `30 mm ISO 2768-m` is `30 mm ± 0.2 mm`. Its classes are f, m, c and v; the letter of form and position behind them (`mK`) says nothing about a length.",
     ),
     code(
         "E0301",

@@ -5,7 +5,7 @@ mod settings;
 pub use settings::{with_base_from, with_settings, with_text_at};
 
 use forcewright_base::diagnostics::SourceId;
-use forcewright_base::units::{Tolerance, format_si};
+
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
 use crate::numbers::{Number, Part};
@@ -90,11 +90,8 @@ fn written(number: &Number, si: f64) -> Value {
         return Value::from(plain);
     }
     let text = if symbol.is_empty() { plain.to_string() } else { format!("{plain} {symbol}") };
-    Value::from(match &number.tolerance {
-        None => text,
-        Some(Tolerance::Symmetric(half)) => format!("{text} ± {}", format_si(*half, &number.unit, TOLERANCE_DIGITS)),
-        Some(Tolerance::Fit(fit)) => format!("{text} {fit}"),
-    })
+    let suffix = number.tolerance.map_or_else(String::new, |tolerance| tolerance.suffix(&number.unit, TOLERANCE_DIGITS));
+    Value::from(text + &suffix)
 }
 
 fn rounded(value: f64) -> f64 {

@@ -57,15 +57,12 @@ impl Part {
     }
 }
 
-/// The values that a number may have without losing the fit that it was typed with.
+/// The values that a number may have without losing the fit or general tolerance that it was typed with.
 fn allowed(range: Range, tolerance: Option<Tolerance>) -> Range {
-    match tolerance {
-        Some(Tolerance::Fit(fit)) => fit.diameters_m().map_or(range, |[above, up_to]| {
-            let low = if above >= range.min { Range { min: above, above: true, ..range } } else { range };
-            Range { max: range.max.min(up_to), ..low }
-        }),
-        _ => range,
-    }
+    tolerance.and_then(|t| t.nominals_si()).map_or(range, |([from, up_to], above)| {
+        let low = if from >= range.min { Range { min: from, above, ..range } } else { range };
+        Range { max: range.max.min(up_to), ..low }
+    })
 }
 
 /// Every number that was given, defaulted or taken from a catalogue, in the order of the description.

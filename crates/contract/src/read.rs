@@ -296,6 +296,10 @@ fn quantity_error(error: &QuantityError, text: &str, span: Span, param: &Param) 
             at("E0209", format!("`{}` is no fit of this diameter: {why}", shorten(word)), "this fit".to_owned())
                 .help("write a fit such as `h7` for a shaft, `H7` for a hole, or a half width, \"± 0.02 mm\"")
         }
+        QuantityError::General(word, why) => {
+            at("E0209", format!("`{}` is no general tolerance of this length: {why}", shorten(word)), "this tolerance".to_owned())
+                .help("write `ISO 2768-m` behind the length, or a half width, \"± 0.2 mm\"")
+        }
     }
 }
 

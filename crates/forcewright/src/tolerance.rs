@@ -7,12 +7,10 @@ mod picture;
 use std::fmt;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Explanation, Sources};
-use forcewright_base::fits::Fit;
 use forcewright_base::units::{Dimension, Tolerance, Unit};
 use forcewright_contract::describe::Slot;
 use forcewright_contract::family::Progress;
 use forcewright_contract::scatter::Scattering;
-use forcewright_contract::studies::Free;
 use forcewright_model::Report;
 use forcewright_study::sampling::Population;
 use forcewright_study::tolerance::{Plan, Study, ToleranceError, study};
@@ -82,8 +80,8 @@ pub struct Toleranced {
     pub population: Population,
     /// The unit in which each was typed.
     pub units: Vec<Unit>,
-    /// The fit of each, where one was typed.
-    pub fits: Vec<Option<Fit>>,
+    /// The tolerance that was typed behind each, if one was.
+    pub typed: Vec<Option<Tolerance>>,
     /// Designs asked for.
     pub samples: u32,
     /// Seed of the draws.
@@ -145,12 +143,8 @@ impl Loaded {
         }
         let nominal = self.solve("", "", &mut |_| true);
         let units = free.iter().map(|f| f.number.unit.clone()).collect();
-        let fit = |free: &Free| match free.number.tolerance {
-            Some(Tolerance::Fit(fit)) => Some(fit),
-            _ => None,
-        };
-        let fits = free.iter().map(fit).collect();
-        Ok(Toleranced { study, population, units, fits, samples, seed, nominal, diagnostics, sources: self.project.sources.clone() })
+        let typed = free.iter().map(|f| f.number.tolerance).collect();
+        Ok(Toleranced { study, population, units, typed, samples, seed, nominal, diagnostics, sources: self.project.sources.clone() })
     }
 }
 

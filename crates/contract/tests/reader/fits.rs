@@ -186,3 +186,30 @@ fn a_setting_with_dotted_keys_is_written_as_it_was_meant() {
     let document: toml_edit::DocumentMut = written.parse().unwrap();
     assert!(document["optimise"]["variables"]["design.thickness"]["range"].is_array());
 }
+
+/// Any length takes a general tolerance: `±` of ISO 2768-1, written back as typed.
+#[test]
+fn a_length_takes_a_general_tolerance() {
+    for (typed, half_mm) in [("17.6 mm ISO 2768-m", 0.2), ("17.6 mm ISO 2768-1-f", 0.1), ("1.76 cm ISO2768-c", 0.5)] {
+        let mut reading = read_text(&text("10 mm", "").replace("thickness = \"1 mm\"", &format!("thickness = \"{typed}\"")));
+        assert!(reading.found.is_empty(), "{}", reading.shown);
+        let numbers = reading.numbers();
+        let number = numbers.iter().find(|n| n.path == "design.thickness").unwrap();
+        let Some(Tolerance::General(_)) = number.tolerance else { panic!("{:?}", number.tolerance) };
+        let [low, high] = number.tolerance.unwrap().deviations_si(number.si).unwrap();
+        assert!((high - half_mm / 1e3).abs() < 1e-15 && (low + high).abs() < 1e-18, "{typed}");
+        assert!(reading.row("design.thickness").ends_with(&format!("ISO 2768-{}", typed.chars().last().unwrap())));
+    }
+    for (typed, code, why) in [
+        ("17.6 mm ISO 2768-q", "E0209", "the classes of ISO 2768-1 are f (fine)"),
+        ("17.6 mm ISO 2768-mK", "E0209", "the classes of ISO 2768-1"),
+        ("0.4 mm ISO 2768-m", "E0209", "for lengths from 0.5 mm to 4000 mm"),
+        ("2 mm ISO 2768-v", "E0209", "for lengths from 3 mm to 4000 mm"),
+        ("17.6 ISO 2768-m", "E0208", ""),
+    ] {
+        let reading = read_text(&text("10 mm", "").replace("thickness = \"1 mm\"", &format!("thickness = \"{typed}\"")));
+        let start = format!("{code} a.toml:4:13");
+        assert!(reading.found.len() == 1 && reading.found[0].starts_with(&start), "{typed}: {:?}", reading.found);
+        assert!(reading.shown.contains(why), "{typed}: {}", reading.shown);
+    }
+}

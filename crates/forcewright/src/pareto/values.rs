@@ -1,7 +1,7 @@
 //! What is varied: a key of the project file and the values that it may have.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
-use forcewright_base::units::{Dimension, Quantity, Tolerance, format_si};
+use forcewright_base::units::{Dimension, Quantity};
 use forcewright_contract::describe::Member;
 use forcewright_contract::numbers::Number;
 use forcewright_contract::studies::Varied;
@@ -79,8 +79,7 @@ impl Choice {
         };
         let tolerance = match (number.and_then(|n| Some((n, n.tolerance.as_ref()?))), &values) {
             (None, _) | (_, Values::Whole(..) | Values::Among(_)) => String::new(),
-            (Some((number, Tolerance::Symmetric(half))), _) => format!(" ± {}", format_si(*half, &number.unit, TOLERANCE_DIGITS)),
-            (Some((_, Tolerance::Fit(fit))), _) => format!(" {fit}"),
+            (Some((number, tolerance)), _) => tolerance.suffix(&number.unit, TOLERANCE_DIGITS),
         };
         let mut choice = Self { key, dimension: None, values, tolerance };
         choice.dimension = choice.common_dimension();

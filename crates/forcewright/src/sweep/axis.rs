@@ -291,6 +291,7 @@ fn quantity_mistake(text: &str, error: &QuantityError) -> String {
         QuantityError::WrongDimension(unit, _) => format!("`{unit}` is the unit of nothing that a project file knows"),
         QuantityError::Tolerance(half) => format!("`{half}` is no tolerance"),
         QuantityError::Fit(word, why) => format!("`{word}` is no fit: {why}"),
+        QuantityError::General(word, why) => format!("`{word}` is no general tolerance: {why}"),
         QuantityError::NotANumber | QuantityError::NoUnit => format!("`{text}` is not a number with its unit"),
     }
 }

@@ -125,8 +125,8 @@ impl Toleranced {
                 Some(None) => ["none".to_owned(), "not even 0".to_owned()],
                 Some(Some(scale)) => {
                     let sign = if scale >= MOST_SCALE { "≥ " } else { "" };
-                    let grade = self.fits.get(i).copied().flatten().and_then(|fit| fit.coarsest(variable.nominal, 2.0 * scale * half));
-                    let grade = grade.map_or_else(String::new, |fit| format!(", {fit}"));
+                    let grade = self.typed.get(i).copied().flatten().and_then(|t| t.coarsest(variable.nominal, 2.0 * scale * half));
+                    let grade = grade.map_or_else(String::new, |t| format!(",{}", t.suffix(unit, 3)));
                     [format!("{sign}{}", format_number(scale, 3)), format!("{sign}±{}{grade}", format_si(scale * half, unit, 3))]
                 }
             };
