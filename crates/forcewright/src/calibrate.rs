@@ -322,12 +322,18 @@ impl Calibrated {
         self.fit.stop == Stop::Converged
     }
 
-    /// Whether it came to its end, all is determined, within its range, and nothing is left unexplained.
+    /// Whether it came to its end, all is determined, within its range, and nothing is left unexplained, as far as the points are enough to
+    /// judge: if they are not, it is not sound.
     pub fn sound(&self) -> bool {
+        self.determined() && self.fit.residuals.judged && !self.fit.residuals.unexplained
+    }
+
+    /// Whether it came to its end, and all is determined, within its range.
+    pub(crate) fn determined(&self) -> bool {
         let held = self.fit.parameters.iter().any(|p| p.at.is_some());
         let open = self.fit.parameters.iter().any(|p| p.error.is_infinite());
         let loose =
             self.fit.identified.loose.iter().any(|l| l.changes.iter().all(|(i, _)| self.fit.parameters[*i].parameter.prior.is_none()));
-        self.converged() && !held && !open && !loose && !self.fit.residuals.unexplained
+        self.converged() && !held && !open && !loose
     }
 }

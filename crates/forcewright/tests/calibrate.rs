@@ -167,7 +167,44 @@ fn a_strip_tells_its_modulus_and_the_zero_of_its_bench() {
     let document = found.document();
     assert_eq!(document["parameters"][0]["path"], "material.young_modulus");
     assert!((document["parameters"][0]["value"].as_f64().unwrap() - young.estimate.value).abs() < 1.0);
-    assert!(found.page("a.toml", "forcewright calibrate a.toml").contains("material.young_modulus"));
+    assert_eq!(document["residuals"]["judged"], true);
+    assert!(document["status"]["intervals_unknown"].is_null() && document["residuals"]["autocorrelation"].is_number());
+    let page = found.page("a.toml", "forcewright calibrate a.toml");
+    let neighbours = format!("Neighbouring residuals have a correlation of {:.2}", found.fit.residuals.autocorrelation);
+    assert!(page.contains("material.young_modulus") && page.contains(&neighbours), "{neighbours}");
+}
+
+/// Seven points determine two parameters and do not tell whether anything is left: it is said, and is no success.
+#[test]
+fn few_points_are_not_called_explained() {
+    let all = strip_csv(187.0, 0.001, 1);
+    let few: Vec<&str> = all.lines().enumerate().filter(|(i, _)| *i == 0 || i % 12 == 1).map(|(_, line)| line).collect();
+    let found = calibrated(STRIP, &few.join("\n")).unwrap();
+    assert!(found.points.x.len() == 7 && found.fit.parameters[0].estimate.interval.contains(187e9), "{:?}", found.rows());
+    assert!(!found.fit.residuals.judged && !found.sound() && found.residual_verdict().starts_with("Too few points to judge"));
+    assert!(found.verdict().contains("too few to judge"), "{}", found.verdict());
+    let page = found.page("a.toml", "forcewright calibrate a.toml");
+    assert!(page.contains("Too few points to judge") && page.contains("which so few points cannot tell"));
+    let document = found.document();
+    assert!(document["residuals"]["judged"] == false && document["residuals"]["unexplained"] == false && document["sound"] == false);
+}
+
+/// Of a search that did not come to its end, intervals are told as unknown, with the reason, wherever they stand.
+#[test]
+fn a_stalled_search_says_that_its_intervals_are_unknown() {
+    let mut found = calibrated(STRIP, &strip_csv(187.0, 0.001, 1)).unwrap();
+    (found.fit.stop, found.fit.ended) = (Stop::Stalled, false);
+    for p in &mut found.fit.parameters {
+        (p.error, p.profile) = (f64::INFINITY, None);
+        p.estimate.interval = forcewright::study::sampling::Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    }
+    assert!(found.rows().iter().all(|row| row[3] == "−∞ to ∞" && row[5] == "interval unknown"), "{:?}", found.rows());
+    let verdict = found.verdict();
+    assert!(verdict.contains("did not come to its end") && verdict.contains("Intervals are unknown: the search stands"), "{verdict}");
+    let (page, document) = (found.page("a.toml", ""), found.document());
+    assert!(page.contains("here intervals are unknown: the search stands") && !page.contains("further points would lie"));
+    assert!(document["status"]["kind"] == "not converged" && document["parameters"][0]["interval"]["low"].is_null());
+    assert!(document["status"]["intervals_unknown"].as_str().unwrap().starts_with("the search stands"));
 }
 
 /// The same bits with one thread and with several.

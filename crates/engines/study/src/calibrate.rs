@@ -191,11 +191,12 @@ pub enum Bound {
 pub struct Estimated {
     /// The parameter.
     pub parameter: Parameter,
-    /// The estimate with Student's interval, within the bounds; unbounded on both sides where nothing is known.
+    /// The estimate with Student's interval, within the bounds; unbounded on both sides where nothing is known, as after a search that did
+    /// not come to its end ([`Fit::stop`]).
     pub estimate: Estimate,
-    /// Standard error; infinite where nothing is known, 0 at a bound.
+    /// Standard error; infinite where nothing is known, 0 at a bound where the search came to its end.
     pub error: f64,
-    /// Interval of the profile likelihood, within the bounds, where it was looked for.
+    /// Interval of the profile likelihood, within the bounds, where it was looked for: about an optimum that is one.
     pub profile: Option<Interval>,
     /// The bound that holds it, if one does.
     pub at: Option<Bound>,
@@ -210,7 +211,8 @@ pub struct Fit {
     pub correlations: Vec<f64>,
     /// Scatter of a point about the curve, one standard deviation, SI.
     pub noise: f64,
-    /// Degrees of freedom that it is known with: points less parameters, of which those count in part that a prior holds.
+    /// Degrees of freedom that it is known with: points less parameters, of which those count in part that a prior holds; what no point
+    /// determines takes none.
     pub degrees: f64,
     /// Values of the model at the start.
     pub before: Vec<f64>,
@@ -226,6 +228,8 @@ pub struct Fit {
     pub residuals: Residuals,
     /// How the search ended.
     pub stop: Stop,
+    /// Whether the search came to its end, whatever became of the profiles. If not, nothing is known of errors and intervals.
+    pub ended: bool,
     /// Rounds of the search.
     pub rounds: usize,
 }
@@ -237,6 +241,8 @@ impl Fit {
     }
 }
 
+/// Times that a fit begins again from a better place that a profile found.
+const MOST_RESTARTS: usize = 3;
 /// Rounds of weights and scatter.
 const MOST_WEIGHTINGS: usize = 100;
 /// Change of all parameters, in standard errors, below which weights rest.
@@ -290,21 +296,14 @@ pub fn fit(
     let sizes: Vec<f64> = parameters.iter().map(|p| p.scale).collect();
     let weighted = Weighting { model, parameters, limits: &limits, sizes: &sizes, measured, loss: plan.loss };
     let search = &mut |rounds, squares| watch(Progress::Search { rounds, squares });
-    let mut settled = weighted.settle(&start, &mut room, search).map_err(CalibrateError::NoStart)?;
-    let known = Known::of(&settled, parameters);
+    let settled = weighted.settle(&start, &mut room, search).map_err(CalibrateError::NoStart)?;
+    let Judged { settled, known, profiles, ended } = weighted.judged(settled, plan, &mut room, watch);
     let t = student(known.degrees, plan.confidence);
-    let mut profiles = vec![None; parameters.len()];
-    if plan.profiles && settled.found.stop != Stop::Interrupted {
-        let (found, whole) = profile::intervals(&weighted, &settled, &known, t, watch);
-        profiles = found;
-        if !whole {
-            settled.found.stop = Stop::Interrupted;
-        }
-    }
     let each = parameters.iter().enumerate().zip(profiles).map(|((i, parameter), profile)| {
-        let (value, error) = (settled.found.place.x[i], known.errors[i]);
-        let at = known.at[i];
-        // A bound that holds an estimate is no knowledge: its interval reaches as far as the likelihood says.
+        let (value, at) = (settled.found.place.x[i], known.at[i]);
+        // Tangents beside the optimum are no knowledge.
+        let error = if ended { known.errors[i] } else { f64::INFINITY };
+        // Nor is a bound that holds an estimate: its interval reaches as far as the likelihood says.
         let half = if at.is_some() { f64::INFINITY } else { t * error };
         let student = Interval { low: (value - half).max(parameter.limits.lower), high: (value + half).min(parameter.limits.upper) };
         let interval = profile.filter(|_| at.is_some()).unwrap_or(student);
@@ -314,8 +313,6 @@ pub fn fit(
     let after = settled.found.place.out.values.clone();
     let raw: Vec<f64> = measured.raw.iter().zip(&after).map(|(m, v)| m - v).collect();
     let largest = measured.y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
-    // Where all is explained as well as the model knows, its own rounding stops the search.
-    let exact = raw.iter().map(|r| r * r).sum::<f64>() <= raw.len() as f64 * plan.accuracy * plan.accuracy * largest * largest;
     let jacobian = &settled.found.place.out.jacobian;
     let residuals = Residuals::of(&measured, &raw, (jacobian, parameters.len()), (known.noise, plan.accuracy * largest), plan.loss);
     Ok(Fit {
@@ -329,7 +326,8 @@ pub fn fit(
         identified: Identified::of(jacobian, &settled, parameters, &known),
         weights: settled.weights.clone(),
         residuals,
-        stop: if settled.found.stop == Stop::Stalled && exact { Stop::Converged } else { settled.found.stop },
+        stop: settled.found.stop,
+        ended,
         rounds: settled.rounds,
     })
 }
@@ -380,7 +378,60 @@ struct Settled {
     rounds: usize,
 }
 
+/// What the optimum says.
+struct Judged {
+    settled: Settled,
+    known: Known,
+    profiles: Vec<Option<Interval>>,
+    /// Whether the search came to its end, whatever became of the profiles.
+    ended: bool,
+}
+
 impl Weighting<'_> {
+    /// Tangents and profiles where a search ended; if a profile finds a better place, again from there.
+    fn judged(&self, mut settled: Settled, plan: &Plan, room: &mut Workspace, watch: Watch<'_>) -> Judged {
+        let none = vec![None; self.parameters.len()];
+        let mut restarts = 0;
+        loop {
+            self.forgive(&mut settled, plan.accuracy);
+            let known = Known::of(&settled, self.parameters);
+            let mut ended = settled.found.stop == Stop::Converged;
+            if !plan.profiles || !ended {
+                return Judged { settled, known, profiles: none, ended };
+            }
+            let t = student(known.degrees, plan.confidence);
+            let found = profile::intervals(self, &settled, &known, t, &mut *watch);
+            let mut profiles = found.intervals;
+            if let Some(better) = found.better {
+                if found.whole && restarts < MOST_RESTARTS {
+                    restarts += 1;
+                    let search = &mut |rounds, squares| watch(Progress::Search { rounds, squares });
+                    if let Ok(next) = self.settle(&better, room, search) {
+                        settled = Settled { rounds: settled.rounds + next.rounds, ..next };
+                        continue;
+                    }
+                }
+                // What is known not to be the optimum has no intervals, unless it is so by less than the model knows.
+                settled.found.stop = Stop::Stalled;
+                self.forgive(&mut settled, plan.accuracy);
+                (ended, profiles) = (settled.found.stop == Stop::Converged, none);
+            }
+            if !found.whole {
+                settled.found.stop = Stop::Interrupted;
+            }
+            return Judged { settled, known, profiles, ended };
+        }
+    }
+
+    /// Where all is explained as well as the model knows, its own rounding stops the search: that is an end.
+    fn forgive(&self, settled: &mut Settled, accuracy: f64) {
+        let squares: f64 = self.measured.raw.iter().zip(&settled.found.place.out.values).map(|(m, v)| (m - v) * (m - v)).sum();
+        let size = accuracy * self.measured.y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+        if settled.found.stop == Stop::Stalled && squares <= self.measured.raw.len() as f64 * size * size {
+            settled.found.stop = Stop::Converged;
+        }
+    }
+
     /// Fits, weighs, and fits again, until nothing changes.
     fn settle(&self, start: &[f64], room: &mut Workspace, watch: &mut dyn FnMut(usize, f64) -> bool) -> Result<Settled, Failure> {
         let points = self.measured.y.len();
@@ -512,16 +563,16 @@ impl Known {
         let priors: Vec<Option<f64>> = free.iter().map(|i| parameters[*i].prior.map(|p| settled.noise / p.sd)).collect();
         let plain = scaled(&out.jacobian, (n, &free), &scales, None);
         let heavy = scaled(&out.jacobian, (n, &free), &scales, Some(&settled.weights));
-        let [firm, unit] = covariance(&plain, &priors, &scales);
-        // Each prior takes the part of its parameter that the points do not determine.
+        let ([firm, unit], determined) = covariance(&plain, &priors, &scales);
+        // Each prior takes the part of its parameter that the points do not determine; what nothing determines takes no point.
         let held: f64 = priors.iter().enumerate().filter_map(|(k, p)| p.map(|root| root * root * unit[k * free.len() + k])).sum();
         let points = out.values.len() as f64;
-        let degrees = (points - free.len() as f64 + held.min(free.len() as f64)).max(1.0);
+        let degrees = (points - determined + held.min(determined)).max(1.0);
         let mut errors = vec![0.0; n];
         for (k, i) in free.iter().enumerate() {
             errors[*i] = settled.noise * unit[k * free.len() + k].sqrt();
         }
-        let [_, weighted] = covariance(&heavy, &priors, &scales);
+        let ([_, weighted], _) = covariance(&heavy, &priors, &scales);
         Self { unit, firm, weighted, errors, noise: settled.noise, degrees, at, free }
     }
 
@@ -564,8 +615,9 @@ fn scaled(jacobian: &[f64], (n, free): (usize, &[usize]), scales: &[f64], weight
     Triangle::of(free.len(), &rows, &vec![0.0; points])
 }
 
-/// Inverse of `JᵀJ` with priors, of scaled columns, unscaled: in the directions that are determined, and with those that are not, infinite.
-fn covariance(triangle: &Triangle, priors: &[Option<f64>], scales: &[f64]) -> [Vec<f64>; 2] {
+/// Inverse of `JᵀJ` with priors, of scaled columns, unscaled: in the directions that are determined, and with those that are not, infinite;
+/// and how many are determined.
+fn covariance(triangle: &Triangle, priors: &[Option<f64>], scales: &[f64]) -> ([Vec<f64>; 2], f64) {
     let m = triangle.n;
     let mut rows = triangle.r.clone();
     let mut zeros = vec![0.0; m];
@@ -577,8 +629,9 @@ fn covariance(triangle: &Triangle, priors: &[Option<f64>], scales: &[f64]) -> [V
     }
     let singular = Singular::of(m, &Triangle::of(m, &rows, &zeros).r);
     let most = singular.values.first().copied().unwrap_or(0.0);
-    let (mut firm, mut open) = (vec![0.0; m * m], vec![0.0; m * m]);
+    let (mut firm, mut open, mut determined) = (vec![0.0; m * m], vec![0.0; m * m], 0.0);
     for (value, vector) in singular.values.iter().zip(&singular.vectors) {
+        determined += f64::from(u8::from(*value > RANK * most));
         for k in 0..m * m {
             let share = vector[k / m] * vector[k % m];
             if *value > RANK * most {
@@ -589,5 +642,5 @@ fn covariance(triangle: &Triangle, priors: &[Option<f64>], scales: &[f64]) -> [V
         }
     }
     let all = firm.iter().zip(&open).map(|(f, o)| f + o).collect();
-    [firm, all]
+    ([firm, all], determined)
 }

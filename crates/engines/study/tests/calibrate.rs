@@ -3,6 +3,8 @@
 mod calibrate {
     mod common;
     mod coverage;
+    mod ends;
     mod nist;
     mod shapes;
+    mod verdicts;
 }

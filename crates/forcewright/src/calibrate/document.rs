@@ -24,7 +24,7 @@ impl Calibrated {
             "study": "calibrate",
             "title": outcome.title,
             "input_sha256": self.before.input_sha256,
-            "status": { "kind": kind },
+            "status": { "kind": kind, "intervals_unknown": self.unknown() },
             "sound": self.sound(),
             "measurement": self.measurement,
             "points": self.points.x.len(),
@@ -81,6 +81,7 @@ impl Calibrated {
         let residuals = &self.fit.residuals;
         json!({
             "unexplained": residuals.unexplained,
+            "judged": residuals.judged,
             "systematic": number(residuals.systematic),
             "scatter": number(residuals.scatter),
             "autocorrelation": number(residuals.autocorrelation),

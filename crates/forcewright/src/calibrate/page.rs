@@ -7,8 +7,8 @@ use forcewright_report::study::{StudyColumn, StudyPage, StudyPart, StudySection,
 use super::Calibrated;
 
 /// What the tests of the residuals are.
-const TESTS: &str = "Two tests look for what is systematic: whether points on one side of the curve stand together (runs of signs), and \
-                     whether a smooth line through what is left explains more of it than chance would (lack of fit). p is the chance that \
+const TESTS: &str = "Two tests look for what is systematic: whether points on one side of the curve stand together (runs of signs), or next \
+                     to all lie on one (sign test), and whether a smooth line through what is left explains more of it than chance would (lack of fit). p is the chance that \
                      scatter alone looks like this; below 0.005 in either test something is called not explained.";
 
 impl Calibrated {
@@ -19,6 +19,7 @@ impl Calibrated {
         let mut left: Vec<StudyPart> = figures(vec![self.residuals()]);
         left.insert(0, StudyPart::Text(self.residual_verdict()));
         left.push(StudyPart::Text(TESTS.to_owned()));
+        left.push(StudyPart::Text(self.neighbours()));
         let sections = vec![
             StudySection { id: "parameters", title: "Parameters", parts: self.parameter_parts() },
             StudySection { id: "warnings", title: "Warnings", parts: vec![StudyPart::Warnings(warnings)] },
@@ -53,10 +54,15 @@ impl Calibrated {
         let what = format!(
             "These numbers were changed until the computed curve came as near as possible to the measured points. An interval of {share} \
              contains the true value in {share} of measurements like this one, {}",
-            if self.fit.residuals.unexplained {
+            if let Some(why) = self.unknown() {
+                format!("but here intervals are unknown: {why}. What stands below are the bounds.")
+            } else if self.fit.residuals.unexplained {
                 "if nothing systematic is left. Here something is: the estimates absorb what they can of it, and the intervals are too narrow."
+                    .to_owned()
+            } else if !self.fit.residuals.judged {
+                "provided that nothing systematic is left, which so few points cannot tell.".to_owned()
             } else {
-                "provided that nothing systematic is left, of which there is no sign below."
+                "provided that nothing systematic is left, of which there is no sign below.".to_owned()
             }
         );
         let columns = [

@@ -48,7 +48,10 @@ impl Calibrated {
             let (edge_x, edge_y) = upper.chain(lower).unzip();
             let share = format!("where {:.0} % of further points would lie", 100.0 * self.confidence.level());
             let share = if branch == 0 { share } else { String::new() };
-            areas.push(Series { label: share, x: edge_x, y: edge_y, stroke: Stroke::Area });
+            // Beside an optimum tangents say nothing of further points.
+            if self.fit.ended {
+                areas.push(Series { label: share, x: edge_x, y: edge_y, stroke: Stroke::Area });
+            }
             let of = |values: &[f64]| order.iter().map(|i| values[*i]).collect::<Vec<f64>>();
             let (points, line) = if branch == 0 { (Stroke::Points, Stroke::Main) } else { (Stroke::OpenPoints, Stroke::Third) };
             for (what, values, stroke) in [

@@ -9,6 +9,8 @@ use super::Calibrated;
 
 /// Distance of what was measured from a prior's mean, in standard deviations of the difference, that contradicts it.
 const CONTRADICTION: f64 = 3.0;
+/// Too few points to tell anything.
+const TOO_FEW: &str = "Too few points to judge";
 /// Digits of an estimate whose interval is as wide as itself, and at most.
 const DIGITS: [usize; 2] = [2, 12];
 
@@ -52,7 +54,9 @@ impl Calibrated {
             let digits = digits(found.estimate.value, interval.high - interval.low);
             let pair = |low: f64, high: f64| format!("{} to {}", self.show(i, low, digits), self.show(i, high, digits));
             let profile = found.profile.map_or_else(|| "–".to_owned(), |p| pair(p.low, p.high));
-            let said = if let Some(bound) = found.at {
+            let said = if !self.fit.ended {
+                "interval unknown"
+            } else if let Some(bound) = found.at {
                 match bound {
                     Bound::Lower => "at its lower bound",
                     Bound::Upper => "at its upper bound",
@@ -109,6 +113,12 @@ impl Calibrated {
             let expected = format_number(runs.expected, 3);
             format!("{lack}{} runs of signs, {expected} expected, p = {}", runs.observed, probability(runs.p))
         };
+        if !residuals.judged {
+            return format!(
+                "{TOO_FEW} whether anything systematic is left beside the scatter of {} ({tests}).",
+                format_si(self.fit.noise, y, 3)
+            );
+        }
         if !residuals.unexplained {
             return format!("Nothing systematic is left over the scatter of {} ({tests}).", format_si(self.fit.noise, y, 3));
         }
@@ -136,15 +146,43 @@ impl Calibrated {
         let state = match &self.fit.stop {
             Stop::Converged if self.sound() => "The parameters explain the measured curve",
             Stop::Converged if self.fit.residuals.unexplained => "The parameters do not explain the measured curve",
-            Stop::Converged => "The measured curve does not determine all parameters",
+            Stop::Converged if !self.determined() => "The measured curve does not determine all parameters",
+            Stop::Converged => "All parameters are determined; the points are too few to judge whether they explain the curve",
             Stop::Interrupted => "Interrupted: the best parameters so far",
             Stop::Stalled | Stop::RoundLimit | Stop::NoStart(_) => "The search did not come to its end",
         };
         let size = |si: f64| format_si(si, &self.axes[1].display, 3);
+        let why = self.unknown().map_or_else(String::new, |why| format!(". Intervals are unknown: {why}"));
         if self.fit.residuals.unexplained {
-            return format!("{state}: {count} points, which lie {} off it (root mean square)", size(self.fit.noise));
+            return format!("{state}: {count} points, which lie {} off it (root mean square){why}", size(self.fit.noise));
         }
-        format!("{state}: {count} points, scatter {}", size(self.fit.noise))
+        format!("{state}: {count} points, scatter {}{why}", size(self.fit.noise))
+    }
+
+    /// Why nothing is known of intervals, if so.
+    pub fn unknown(&self) -> Option<&'static str> {
+        if self.fit.ended {
+            return None;
+        }
+        Some(match &self.fit.stop {
+            Stop::Interrupted => "the search was interrupted, and these estimates are not the best",
+            Stop::RoundLimit => "after so many rounds the search still finds better estimates",
+            Stop::Converged | Stop::Stalled | Stop::NoStart(_) => {
+                "the search stands where its tangents still promise better estimates, as at a kink of the curve or where derivatives are \
+                 missing, or another place nearby is better"
+            }
+        })
+    }
+
+    /// How neighbouring residuals go together.
+    pub(super) fn neighbours(&self) -> String {
+        let chance = (self.points.x.len().max(1) as f64).sqrt().recip();
+        format!(
+            "Neighbouring residuals have a correlation of {:.2}, where independent errors make 0 ± {} (one standard deviation). Errors that \
+             depend on each other, as of drift or of a filter in the amplifier, make intervals too narrow.",
+            self.fit.residuals.autocorrelation,
+            format_number(chance, 2)
+        )
     }
 
     /// Says what is not sound about the result.
@@ -179,7 +217,11 @@ impl Calibrated {
             }
             // Were both right, an estimate would lie away from the mean by what the prior's variance loses in it.
             let moves = |sd: f64| (sd * sd - found.error * found.error).max(1e-6 * sd * sd).sqrt();
-            let away = found.parameter.prior.map_or(0.0, |p| (found.estimate.value - p.mean).abs() / moves(p.sd));
+            let away = found
+                .parameter
+                .prior
+                .filter(|_| found.error.is_finite())
+                .map_or(0.0, |p| (found.estimate.value - p.mean).abs() / moves(p.sd));
             if away > CONTRADICTION {
                 let message = format!(
                     "the measurement contradicts the prior of `{}` by {} standard deviations",

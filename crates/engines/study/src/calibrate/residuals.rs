@@ -1,13 +1,27 @@
 //! What a curve does not explain.
 
+use std::ops::Range;
+
+use forcewright_base::maths;
+
 use super::{Loss, Measured};
-use crate::sampling::{fisher_tail, normal};
+use crate::sampling::fisher_tail;
 
 /// Chance of each of the two tests to call an error of measuring unexplained.
 const FALSE_ALARM: f64 = 0.005;
 /// Intervals of the smooth curve through residuals, at most, and points in each, at least.
 const MOST_INTERVALS: usize = 12;
 const LEAST_POINTS: usize = 8;
+/// Intervals of so many points and more, if those are not more: the first few tell a bend and a wave.
+const FEW: [(usize, usize); 2] = [(6, 2), (12, 3)];
+/// Degrees of freedom about the smooth curve, at least.
+const LEAST_ABOUT: usize = 3;
+/// Degrees of freedom of a scatter below which a lack of fit must be enormous to be found.
+const LEAST_DEGREES: f64 = 5.0;
+/// Points beyond parameters from which few runs alone are found.
+const LEAST_ORDER: usize = 12;
+/// Residuals on the rarer side from which their order says something: fewer make few runs in any order.
+const LEAST_SIDE: usize = 3;
 /// Degrees of freedom of repeats from which they say what the scatter is.
 const LEAST_REPEATS: usize = 8;
 /// Distance of places that are the same, over the width of all.
@@ -25,7 +39,7 @@ pub struct Runs {
     pub observed: usize,
     /// As many as chance makes.
     pub expected: f64,
-    /// Probability of so few by chance.
+    /// Probability of so few by chance; where next to all residuals lie on one side, of so many there, on either (sign test).
     pub p: f64,
 }
 
@@ -84,6 +98,8 @@ pub struct Residuals {
     pub scatter: f64,
     /// Whether a test says that something is not explained, and it is larger than the model is wrong by.
     pub unexplained: bool,
+    /// Whether the points are enough to tell: if not, nothing unexplained means nothing.
+    pub judged: bool,
     /// Where most of it is, if so.
     pub stretch: Option<Stretch>,
 }
@@ -98,62 +114,96 @@ impl Residuals {
     ) -> Self {
         // Far points that a loss plays down are pulled in as far as it does.
         let own: Vec<f64> = raw.iter().map(|r| if noise > 0.0 { r * loss.weight(r / noise) } else { *r }).collect();
-        let order = order(measured);
-        let sorted: Vec<f64> = order.iter().map(|i| own[*i]).collect();
-        let runs = Runs::of(&sorted);
+        let points = Points::of(measured, &own);
         let mut basis = Basis::default();
         for k in 0..columns {
-            basis.push(&jacobian.chunks_exact(columns).map(|row| row[k]).collect::<Vec<f64>>());
+            basis.push(&points.from.iter().map(|i| jacobian[i * columns + k]).collect::<Vec<f64>>());
         }
         let fitted = basis.count();
-        let bare = basis.rest(&own);
-        for hat in hats(measured, &order) {
-            basis.push(&hat);
-        }
-        let (all, rest) = (basis.count(), basis.rest(&own));
-        let n = own.len() as f64;
-        let squares = |v: &[f64]| v.iter().map(|r| r * r).sum::<f64>();
-        let (more, left) = ((all - fitted) as f64, n - all as f64);
-        let scatter = if left >= 1.0 { (squares(&rest) / left).sqrt() } else { noise };
-        let smooth = (more >= 1.0 && left >= 3.0)
-            .then(|| LackOfFit::of(Against::Smooth, squares(&bare) - squares(&rest), squares(&rest), [more, left]));
-        let lack = repeats(measured, &bare, &order, fitted).or(smooth);
-        // What a smooth curve takes of pure scatter is none of it; parameters have taken what of it they can.
-        let systematic = ((squares(&own) - squares(&rest)) / n - all as f64 * scatter * scatter / n).max(0.0).sqrt();
-        let found = lack.is_some_and(|l| l.p < FALSE_ALARM) || runs.p < FALSE_ALARM;
+        let bare = basis.rest(&points.r);
+        let n = points.r.len() as f64;
+        let runs = Runs::of(&points.r);
+        let lack = points.repeats(&bare, fitted, accuracy).or_else(|| points.smooth(&basis, &bare));
+        let lacking = lack.is_some_and(|(l, _)| l.p < FALSE_ALARM);
+        let found = lacking || runs.p < FALSE_ALARM;
+        let (systematic, scatter) = match lack {
+            // Found, but not in the shape that the other test looks for: then the means of the runs are its size.
+            _ if found && !lacking => of_runs(&points.r),
+            Some((lack, within)) => {
+                // What chance explains is none of it; nor is what parameters that priors or bounds hold take of chance.
+                let bent = lack.degrees[0] * (lack.ratio - 1.0).max(0.0) * within;
+                let held = (squares(&points.r) - squares(&bare) - fitted as f64 * within).max(0.0);
+                (((bent + held) / n).sqrt(), within.sqrt())
+            }
+            None => (0.0, noise),
+        };
         let unexplained = found && systematic > accuracy;
-        let stretch = if unexplained { longest(measured, &own, &order, scatter) } else { None };
-        Self { values: raw.to_vec(), runs, autocorrelation: autocorrelation(&sorted), lack, systematic, scatter, unexplained, stretch }
+        let judged = unexplained || lack.is_some_and(|(l, _)| l.degrees[1] >= LEAST_DEGREES) || points.r.len() >= fitted + LEAST_ORDER;
+        let stretch = if unexplained { points.longest(scatter) } else { None };
+        let autocorrelation = autocorrelation(&points.r);
+        Self { values: raw.to_vec(), runs, autocorrelation, lack: lack.map(|(l, _)| l), systematic, scatter, unexplained, judged, stretch }
     }
 }
 
-/// Points branch by branch, each in the order of their places.
-fn order(measured: &Measured<'_>) -> Vec<usize> {
-    let mut all: Vec<usize> = (0..measured.x.len()).collect();
-    let mut first = 0;
-    for count in measured.branches {
-        all[first..first + count].sort_by(|a, b| measured.x[*a].total_cmp(&measured.x[*b]));
-        first += count;
+fn squares(v: &[f64]) -> f64 {
+    v.iter().map(|r| r * r).sum()
+}
+
+/// Root of the mean square of the means of stretches of one sign, and the scatter about them.
+fn of_runs(sorted: &[f64]) -> (f64, f64) {
+    let (mut between, mut runs) = (0.0, 0_usize);
+    for run in sorted.chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
+        let sum: f64 = run.iter().sum();
+        between += sum * sum / run.len() as f64;
+        runs += 1;
     }
-    all
+    let within = (squares(sorted) - between).max(0.0);
+    ((between / sorted.len().max(1) as f64).sqrt(), (within / sorted.len().saturating_sub(runs).max(1) as f64).sqrt())
 }
 
 impl Runs {
     fn of(sorted: &[f64]) -> Self {
         let signs: Vec<bool> = sorted.iter().filter(|r| r.abs() > 0.0).map(|r| *r > 0.0).collect();
+        let above = signs.iter().filter(|s| **s).count();
+        let sides = [above, signs.len() - above];
         let n = signs.len() as f64;
-        let above = signs.iter().filter(|s| **s).count() as f64;
         let observed = usize::from(!signs.is_empty()) + signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        let product = 2.0 * above * (n - above);
-        let expected = 1.0 + product / n.max(1.0);
-        let variance = product * (product - n) / (n * n * (n - 1.0)).max(1.0);
-        let p = if variance > 0.0 { normal::cdf((observed as f64 + 0.5 - expected) / variance.sqrt()) } else { 1.0 };
+        let expected = 1.0 + 2.0 * sides[0] as f64 * sides[1] as f64 / n.max(1.0);
+        let rarer = sides[0].min(sides[1]);
+        let p = if rarer < LEAST_SIDE { one_sided(signs.len(), rarer) } else { as_few(sides, observed) };
         Self { observed, expected, p }
     }
 }
 
+/// Probability of at most so many runs, with at least one sign on each side: the distribution of Wald & Wolfowitz itself, since the normal
+/// one that it tends to alarms too often where few points lie on one side.
+fn as_few([a, b]: [usize; 2], observed: usize) -> f64 {
+    let ways = |n: usize, k: usize| {
+        let of = |v: usize| maths::ln_gamma(v as f64 + 1.0);
+        if k > n { f64::NEG_INFINITY } else { of(n) - of(k) - of(n - k) }
+    };
+    let all = ways(a + b, a);
+    let one = |runs: usize| {
+        let k = runs / 2;
+        // An even number has as many runs on both sides, an odd one has one more on one of them.
+        let part = |x: usize, y: usize| maths::exp(ways(a - 1, x) + ways(b - 1, y) - all);
+        if runs.is_multiple_of(2) { 2.0 * part(k - 1, k - 1) } else { part(k, k - 1) + part(k - 1, k) }
+    };
+    (2..=observed).map(one).sum::<f64>().min(1.0)
+}
+
+/// Probability that of `n` signs at most `rarer` are the one or the other: the sign test, two-sided.
+fn one_sided(n: usize, rarer: usize) -> f64 {
+    let (mut ways, mut sum) = (1.0, 0.0);
+    for k in 0..=rarer {
+        sum += ways;
+        ways *= n.saturating_sub(k) as f64 / (k + 1) as f64;
+    }
+    (1..n).fold(sum, |p, _| 0.5 * p).min(1.0)
+}
+
 fn autocorrelation(sorted: &[f64]) -> f64 {
-    let all: f64 = sorted.iter().map(|r| r * r).sum();
+    let all = squares(sorted);
     if all > 0.0 { sorted.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / all } else { 0.0 }
 }
 
@@ -166,7 +216,7 @@ impl LackOfFit {
 }
 
 /// Columns that are made orthogonal, one after the other.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Basis {
     columns: Vec<Vec<f64>>,
 }
@@ -188,10 +238,9 @@ impl Basis {
 
     /// Adds what is new about a column.
     fn push(&mut self, column: &[f64]) {
-        let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let before = size(column);
+        let before = squares(column).sqrt();
         let mut rest = self.rest(column);
-        let after = size(&rest);
+        let after = squares(&rest).sqrt();
         if after > NEW * before {
             for r in &mut rest {
                 *r /= after;
@@ -201,73 +250,120 @@ impl Basis {
     }
 }
 
-/// Of each branch, piecewise straight lines between places with as many points between any two.
-fn hats(measured: &Measured<'_>, order: &[usize]) -> Vec<Vec<f64>> {
-    let mut all = Vec::new();
-    let mut first = 0;
-    for count in measured.branches {
-        let own = &order[first..first + count];
-        first += count;
-        let intervals = (count / LEAST_POINTS).min(MOST_INTERVALS);
-        if intervals < 2 {
-            continue;
-        }
-        let mut knots: Vec<f64> = (0..=intervals).map(|k| measured.x[own[k * (count - 1) / intervals]]).collect();
-        knots.dedup_by(|a, b| a <= b);
-        for (k, knot) in knots.iter().enumerate() {
-            let mut hat = vec![0.0; measured.x.len()];
-            for point in own {
-                let x = measured.x[*point];
-                let side = if x < *knot { k.checked_sub(1) } else { Some(k + 1).filter(|n| *n < knots.len()) };
-                let away = side.map_or(0.0, |s| (x - knot) / (knots[s] - knot));
-                hat[*point] = (1.0 - away.abs()).max(0.0);
+/// Residuals branch by branch, each in the order of their places.
+struct Points {
+    /// Where each was among all that was measured.
+    from: Vec<usize>,
+    x: Vec<f64>,
+    r: Vec<f64>,
+    /// Of each branch, empty ones too.
+    branches: Vec<Range<usize>>,
+    /// Distance of places that are the same.
+    same: f64,
+}
+
+impl Points {
+    /// Rows that repeat each other exactly were not measured twice: one of them counts.
+    fn of(measured: &Measured<'_>, residuals: &[f64]) -> Self {
+        let [same, equal] = [measured.x, measured.raw].map(|all| {
+            let [low, high] = all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
+            SAME * (high - low)
+        });
+        let (mut from, mut branches, mut first) = (Vec::new(), Vec::new(), 0);
+        for count in measured.branches {
+            let mut own: Vec<usize> = (first..first + count).collect();
+            own.sort_by(|a, b| measured.x[*a].total_cmp(&measured.x[*b]));
+            first += count;
+            let begin = from.len();
+            for group in own.chunk_by(|a, b| (measured.x[*a] - measured.x[*b]).abs() <= same) {
+                let mut by_value = group.to_vec();
+                by_value.sort_by(|a, b| measured.raw[*a].total_cmp(&measured.raw[*b]));
+                by_value.dedup_by(|next, kept| measured.raw[*next] - measured.raw[*kept] <= equal);
+                // Those that are left, in the order in which they were measured.
+                by_value.sort_unstable();
+                from.extend(by_value);
             }
-            all.push(hat);
+            branches.push(begin..from.len());
         }
+        let [x, r] = [measured.x, residuals].map(|all| from.iter().map(|i| all[*i]).collect());
+        Self { from, x, r, branches, same }
     }
-    all
-}
 
-/// Lack of fit against points measured again at one place, where there are enough.
-fn repeats(measured: &Measured<'_>, residuals: &[f64], order: &[usize], fitted: usize) -> Option<LackOfFit> {
-    let [low, high] = measured.x.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
-    let same = SAME * (high - low);
-    let (mut first, mut groups, mut pure) = (0, 0_usize, 0.0);
-    for count in measured.branches {
-        for group in order[first..first + count].chunk_by(|a, b| (measured.x[*a] - measured.x[*b]).abs() <= same) {
-            let mean = group.iter().map(|i| residuals[*i]).sum::<f64>() / group.len() as f64;
-            pure += group.iter().map(|i| residuals[*i] - mean).map(|d| d * d).sum::<f64>();
-            groups += 1;
+    /// Of each branch, piecewise straight lines between places with as many points between any two.
+    fn hats(&self) -> Vec<Vec<f64>> {
+        let mut all = Vec::new();
+        for own in &self.branches {
+            let count = own.len();
+            let few = FEW.iter().rev().find(|(points, _)| count >= *points).map_or(0, |(_, intervals)| *intervals);
+            let intervals = (count / LEAST_POINTS).max(few).min(MOST_INTERVALS);
+            if intervals < 2 {
+                continue;
+            }
+            let mut knots: Vec<f64> = (0..=intervals).map(|k| self.x[own.start + k * (count - 1) / intervals]).collect();
+            knots.dedup_by(|a, b| a <= b);
+            for (k, knot) in knots.iter().enumerate() {
+                let mut hat = vec![0.0; self.x.len()];
+                for (x, value) in self.x[own.clone()].iter().zip(&mut hat[own.clone()]) {
+                    let side = if x < knot { k.checked_sub(1) } else { Some(k + 1).filter(|n| *n < knots.len()) };
+                    let away = side.map_or(0.0, |s| (x - knot) / (knots[s] - knot));
+                    *value = (1.0 - away.abs()).max(0.0);
+                }
+                all.push(hat);
+            }
         }
-        first += count;
+        all
     }
-    let again = residuals.len() - groups;
-    let all: f64 = residuals.iter().map(|r| r * r).sum();
-    (again >= LEAST_REPEATS && groups > fitted)
-        .then(|| LackOfFit::of(Against::Repeats, all - pure, pure, [(groups - fitted) as f64, again as f64]))
-}
 
-/// The stretch whose mean lies farthest from 0, over the error of a mean of so many points.
-fn longest(measured: &Measured<'_>, own: &[f64], order: &[usize], scatter: f64) -> Option<Stretch> {
-    let mut best: Option<(f64, Stretch)> = None;
-    let mut first = 0;
-    for (branch, count) in measured.branches.iter().enumerate() {
-        let points = &order[first..first + count];
-        first += count;
-        let size = count.div_ceil(GROUPS).max(1);
-        let groups: Vec<&[usize]> = points.chunks(size).collect();
-        for from in 0..groups.len() {
-            let (mut sum, mut n) = (0.0, 0_usize);
-            for to in from..groups.len() {
-                sum += groups[to].iter().map(|i| own[*i]).sum::<f64>();
-                n += groups[to].len();
-                let far = sum.abs() / (n as f64).sqrt() / scatter.max(f64::MIN_POSITIVE);
-                if best.as_ref().is_none_or(|(most, _)| far > *most) {
-                    let [a, b] = [groups[from][0], groups[to][groups[to].len() - 1]].map(|i| measured.x[i]);
-                    best = Some((far, Stretch { branch, from: a, to: b, mean: sum / n as f64, points: n }));
+    /// Lack of fit against a smooth curve, and the square of the scatter about it; none where the curve follows each point.
+    fn smooth(&self, basis: &Basis, bare: &[f64]) -> Option<(LackOfFit, f64)> {
+        let mut rich = basis.clone();
+        self.hats().iter().for_each(|hat| rich.push(hat));
+        (rich.count() > basis.count() && self.r.len() >= rich.count() + LEAST_ABOUT).then(|| {
+            let left = squares(&rich.rest(&self.r));
+            let degrees = [(rich.count() - basis.count()) as f64, (self.r.len() - rich.count()) as f64];
+            (LackOfFit::of(Against::Smooth, squares(bare) - left, left, degrees), left / degrees[1])
+        })
+    }
+
+    /// Lack of fit against points measured again at one place, where there are enough, and the square of their scatter: of the least, what
+    /// the model is wrong by, since a coarse display or a conversion makes repeats that next to agree.
+    fn repeats(&self, bare: &[f64], fitted: usize, accuracy: f64) -> Option<(LackOfFit, f64)> {
+        let (mut groups, mut pure) = (0_usize, 0.0);
+        for own in &self.branches {
+            let places: Vec<usize> = own.clone().collect();
+            for group in places.chunk_by(|a, b| (self.x[*a] - self.x[*b]).abs() <= self.same) {
+                let mean = group.iter().map(|i| bare[*i]).sum::<f64>() / group.len() as f64;
+                pure += group.iter().map(|i| bare[*i] - mean).map(|d| d * d).sum::<f64>();
+                groups += 1;
+            }
+        }
+        let again = self.r.len() - groups;
+        (again >= LEAST_REPEATS && groups > fitted).then(|| {
+            let degrees = [(groups - fitted) as f64, again as f64];
+            let left = pure.max(again as f64 * accuracy * accuracy);
+            (LackOfFit::of(Against::Repeats, squares(bare) - pure, left, degrees), left / degrees[1])
+        })
+    }
+
+    /// The stretch whose mean lies farthest from 0, over the error of a mean of so many points.
+    fn longest(&self, scatter: f64) -> Option<Stretch> {
+        let mut best: Option<(f64, Stretch)> = None;
+        for (branch, own) in self.branches.iter().enumerate() {
+            let places: Vec<usize> = own.clone().collect();
+            let groups: Vec<&[usize]> = places.chunks(places.len().div_ceil(GROUPS).max(1)).collect();
+            for from in 0..groups.len() {
+                let (mut sum, mut n) = (0.0, 0_usize);
+                for to in from..groups.len() {
+                    sum += groups[to].iter().map(|i| self.r[*i]).sum::<f64>();
+                    n += groups[to].len();
+                    let far = sum.abs() / (n as f64).sqrt() / scatter.max(f64::MIN_POSITIVE);
+                    if best.as_ref().is_none_or(|(most, _)| far > *most) {
+                        let [a, b] = [groups[from][0], groups[to][groups[to].len() - 1]].map(|i| self.x[i]);
+                        best = Some((far, Stretch { branch, from: a, to: b, mean: sum / n as f64, points: n }));
+                    }
                 }
             }
         }
+        best.map(|(_, stretch)| stretch)
     }
-    best.map(|(_, stretch)| stretch)
 }

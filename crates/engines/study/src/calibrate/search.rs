@@ -28,7 +28,8 @@ const EXACT: f64 = 4.0 * f64::EPSILON;
 pub enum Stop {
     /// No step within the bounds makes the squares smaller, and the tangents promise next to nothing.
     Converged,
-    /// Steps find nothing smaller though the tangents promise it: the model is not smooth, or its derivatives are wrong.
+    /// Steps find nothing smaller though the tangents promise it, or a profile does though steps did not: the model is not smooth, or its
+    /// derivatives are wrong or missing.
     Stalled,
     /// More rounds than are useful.
     RoundLimit,
@@ -137,20 +138,26 @@ impl Problem<'_> {
             if left <= AT_REST || place.squares <= EXACT * EXACT * self.size() {
                 return Ok(Found { place, stop: Stop::Converged, rounds });
             }
+            let mut first = true;
             loop {
+                // A try may cost as much as a round. From its least to its most, damping grows in 15 of them.
+                if !first && !watch(rounds, place.squares) {
+                    return Ok(Found { place, stop: Stop::Interrupted, rounds });
+                }
+                first = false;
                 let change = step(damping);
                 let next: Vec<f64> =
                     place.x.iter().zip(&change).zip(self.limits).map(|((x, d), l)| (x + d).clamp(l.lower, l.upper)).collect();
                 let promised = tangent.gain(&change);
                 let tried = self.evaluate(&next, false, room).ok().filter(|t| t.squares < place.squares);
                 if let Some(better) = tried.filter(|_| promised > 0.0) {
-                    let kept = (place.squares - better.squares) / promised;
-                    // H. B. Nielsen, "Damping parameter in Marquardt's method", IMM-REP-1999-05, DTU 1999, eq. (2.5).
-                    let cube = 2.0 * kept - 1.0;
-                    damping = (damping * (1.0 - cube * cube * cube).max(1.0 / 3.0)).max(LEAST_DAMPING);
-                    harder = 2.0;
-                    // Derivatives fail only where the values' neighbours do: then the search stays outside.
+                    // Derivatives fail only where the values' neighbours do: then the search stays outside, and the try has failed.
                     if let Ok(whole) = self.evaluate(&better.x, true, room) {
+                        let kept = (place.squares - better.squares) / promised;
+                        // H. B. Nielsen, "Damping parameter in Marquardt's method", IMM-REP-1999-05, DTU 1999, eq. (2.5).
+                        let cube = 2.0 * kept - 1.0;
+                        damping = (damping * (1.0 - cube * cube * cube).max(1.0 / 3.0)).max(LEAST_DAMPING);
+                        harder = 2.0;
                         place = whole;
                         break;
                     }
