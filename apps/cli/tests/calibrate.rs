@@ -55,6 +55,14 @@ fn what_is_not_determined_ends_with_one_and_what_is_wrong_with_two() {
     let found = run(folder.path(), &["calibrate", "a.toml"]);
     assert!(found.code == Some(1) && found.stderr.contains("W0902"), "{}\n{}", found.stdout, found.stderr);
     assert_eq!(listing(folder.path()), ["a.toml", "bench.csv"]);
+    // A strip of 100 mm that is to go 150 mm has no curve to begin with; the section that asks for one is named.
+    let found = run(folder.path(), &["calibrate", "a.toml", "--set", "load.travel=150 mm", "--set", "model.beam=inextensible"]);
+    assert_eq!(found.code, Some(3), "{}", found.stderr);
+    assert!(
+        found.stderr.contains("error[E0907]") && found.stderr.contains("a.toml:") && found.stderr.contains("[calibrate]"),
+        "{}",
+        found.stderr
+    );
     let found = run(folder.path(), &["calibrate", "a.toml", "--set", "measurements.bench.x=way / mm"]);
     assert!(found.code == Some(2) && found.stderr.contains("error[E0112]"), "{}", found.stderr);
     std::fs::remove_file(folder.path().join("bench.csv")).unwrap();

@@ -97,13 +97,15 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Other places that matter, with what is said there.
     pub related: Vec<(Span, String)>,
+    /// Whether a word means nothing: no change elsewhere makes it right.
+    pub unknown_word: bool,
 }
 
 impl Diagnostic {
     /// An error at a place.
     pub fn error(code: &'static str, span: Span, message: impl Into<String>) -> Self {
         let (message, label) = (message.into(), String::new());
-        Self { code, severity: Severity::Error, message, span: Some(span), label, help: None, related: Vec::new() }
+        Self { code, severity: Severity::Error, message, span: Some(span), label, help: None, related: Vec::new(), unknown_word: false }
     }
 
     /// A warning at a place.
@@ -114,6 +116,12 @@ impl Diagnostic {
     /// An error without a place in a text.
     pub fn placeless(code: &'static str, message: impl Into<String>) -> Self {
         Self { span: None, ..Self::error(code, Span::default(), message) }
+    }
+
+    /// Marks a word that means nothing: a slip, whatever else the file says.
+    pub fn unknown_word(mut self) -> Self {
+        self.unknown_word = true;
+        self
     }
 
     /// Adds what is said at the underlined text.

@@ -46,7 +46,7 @@ pub const CODES: &[Explanation] = &[
     Explanation {
         code: "E0906",
         title: "a number that cannot be looked for",
-        text: "Requirements, loads and models are what the measurement was made with; a calibration looks for numbers of the design, its material, its errors, losses, surroundings and bodies. A range is a smaller and a larger value, with the one in the file between them.",
+        text: "Requirements, loads and models are what the measurement was made with; a calibration looks for numbers of the design, its material, its errors, losses, surroundings and bodies, and of the bench. A range is a smaller and a larger value, with the one in the file between them: the search begins there. What the file does not say of a bench is zero.",
     },
     Explanation {
         code: "E0908",
@@ -56,7 +56,7 @@ pub const CODES: &[Explanation] = &[
     Explanation {
         code: "E0910",
         title: "not a compliance",
-        text: "The compliance of a bench is the travel that it takes itself, per force (or turn per torque): `\"2e-6 m/N\"`, `\"0.002 mm/N\"`.",
+        text: "The compliance of a bench is the travel that it takes itself, per force (or turn per torque): `\"2e-6 m/N\"`, `\"0.002 mm/N\"`, `\"0.01 deg/(N*m)\"`. Any unit of the abscissa over any unit of the ordinate will do; one of several symbols stands in brackets, or after a stroke each, `deg/N/m`. Behind `±` the unit may be left out, or a part in per cent stand. Zero needs no unit.",
     },
 ];
 
@@ -247,8 +247,8 @@ pub struct OfBench {
     pub limits: Limits,
     /// What is known of it.
     pub prior: Option<Prior>,
-    /// Symbol of its SI unit.
-    pub unit: String,
+    /// Where its range stands; without one, its path.
+    pub span: Span,
 }
 
 /// What is looked for.
@@ -327,15 +327,16 @@ fn of_bench(name: &Located<String>, sought: &Sought, [x, y]: [Dimension; 2], ben
     let mut any = false;
     for ((path, which), slot) in BENCH.iter().zip(bench).filter(|((path, _), _)| matches(&name.value, path)) {
         any = true;
-        let (kind, unit) = match which {
-            BenchParameter::OffsetX => (Kind::Of(x), x.si_symbol().to_owned()),
-            BenchParameter::OffsetY => (Kind::Of(y), y.si_symbol().to_owned()),
-            BenchParameter::Compliance => (Kind::Compliance([x, y]), per([x, y])),
+        let kind = match which {
+            BenchParameter::OffsetX => Kind::Of(x),
+            BenchParameter::OffsetY => Kind::Of(y),
+            BenchParameter::Compliance => Kind::Compliance([x, y]),
         };
         let limits = sought.range.as_ref().map_or(Some([f64::NEG_INFINITY, f64::INFINITY]), |r| kind.range(r, diagnostics));
         let prior = sought.prior.as_ref().map(|p| kind.prior(p, diagnostics));
         if let (Some([lower, upper]), None | Some(Some(_))) = (limits, &prior) {
-            *slot = Some(OfBench { path, which: *which, limits: Limits { lower, upper }, prior: prior.flatten(), unit });
+            let span = sought.range.as_ref().map_or(name.span, |r| r.span);
+            *slot = Some(OfBench { path, which: *which, limits: Limits { lower, upper }, prior: prior.flatten(), span });
         }
     }
     if !any {
@@ -347,10 +348,29 @@ fn of_bench(name: &Located<String>, sought: &Sought, [x, y]: [Dimension; 2], ben
     }
 }
 
-/// Unit of abscissa per ordinate, as people write it.
-fn per([x, y]: [Dimension; 2]) -> String {
-    let y = y.si_symbol();
-    if y.contains(['*', '/']) { format!("{}/({y})", x.si_symbol()) } else { format!("{}/{y}", x.si_symbol()) }
+/// Symbol of a unit of the abscissa per one of the ordinate, as people write it.
+pub fn per(x: &str, y: &str) -> String {
+    match y {
+        "" | "1" => x.to_owned(),
+        y if y.contains(['*', '/', '·']) => format!("{x}/({y})"),
+        y => format!("{x}/{y}"),
+    }
+}
+
+/// A unit with one pair of brackets behind a stroke, without them: `deg/(N*m)` is `deg/N/m`. `None` for other brackets.
+fn without_brackets(unit: &str) -> Option<String> {
+    let Some((before, rest)) = unit.split_once('(') else { return Some(unit.to_owned()) };
+    let (inside, after) = rest.split_once(')')?;
+    let before = before.trim_end().strip_suffix('/')?;
+    if [before, inside, after].iter().any(|part| part.contains(['(', ')'])) {
+        return None;
+    }
+    let turned = |c: char| match c {
+        '*' | '·' | '⋅' | '×' => '/',
+        '/' => '*',
+        other => other,
+    };
+    Some(format!("{before}/{}{after}", inside.chars().map(turned).collect::<String>()))
 }
 
 impl Kind {
@@ -394,33 +414,78 @@ impl Kind {
     }
 }
 
-/// A compliance and its half width, 0 without one, SI.
-fn compliance(slot: &Located<Value>, [x, y]: [Dimension; 2], diagnostics: &mut Diagnostics) -> Option<[f64; 2]> {
-    let one = |text: &str| {
-        let text = text.trim();
-        let end = text.find(|c: char| c.is_whitespace()).unwrap_or(text.len());
-        let (digits, unit) = text.split_at(end);
-        let unit = Unit::parse(unit).ok()?;
+/// A number and the unit behind it, with or without a blank between.
+fn number_and_unit(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    let most = text.find(|c: char| !c.is_ascii_digit() && !"+-.eE".contains(c)).unwrap_or(text.len());
+    let value = |end: usize| text[..end].parse::<f64>().ok().filter(|v| v.is_finite());
+    (1..=most).rev().find_map(|end| Some((value(end)?, text[end..].trim())))
+}
+
+/// A compliance and its half width, 0 without one, as they are written, SI.
+fn compliance_of(text: &str, [x, y]: [Dimension; 2]) -> Option<[f64; 2]> {
+    let in_unit = |value: f64, unit: &str| {
         // Times an ordinate it is an abscissa.
-        let whole = Unit::parse(&format!("{}*{}", unit.symbol(), y.si_symbol())).ok().filter(|whole| whole.is(x))?;
-        digits.parse::<f64>().ok().map(|v| whole.to_si(v)).filter(|v| v.is_finite())
+        let whole = Unit::parse(&format!("{}*{}", without_brackets(unit)?, y.si_symbol())).ok().filter(|whole| whole.is(x))?;
+        Some(whole.to_si(value)).filter(|v| v.is_finite())
     };
+    let text = text.replace('−', "-").replace("+/-", "±").replace("+-", "±");
+    let Some((value, half)) = text.split_once('±') else {
+        let (value, unit) = number_and_unit(&text)?;
+        return Some([if unit.is_empty() && value.abs() <= 0.0 { 0.0 } else { in_unit(value, unit)? }, 0.0]);
+    };
+    let ((value, unit), (half, of_half)) = (number_and_unit(value)?, number_and_unit(half)?);
+    // As of other quantities the unit may be written once, before or behind `±`.
+    let unit = if unit.is_empty() && of_half != "%" { of_half } else { unit };
+    let value = in_unit(value, unit)?;
+    Some([value, if of_half == "%" { 0.01 * half * value.abs() } else { in_unit(half, if of_half.is_empty() { unit } else { of_half })? }])
+}
+
+/// A compliance and its half width, 0 without one, SI.
+fn compliance(slot: &Located<Value>, axes: [Dimension; 2], diagnostics: &mut Diagnostics) -> Option<[f64; 2]> {
     let found = match &slot.value {
-        Value::Text(text) => match text.replace("+/-", "±").split_once('±') {
-            None => one(text).map(|v| [v, 0.0]),
-            Some((value, half)) => one(value).zip(one(half)).map(|(v, h)| [v, h]),
-        },
+        Value::Text(text) => compliance_of(text, axes),
         Value::Number(value) if value.abs() <= 0.0 => Some([0.0; 2]),
         _ => None,
     };
     if found.is_none() {
+        let [x, y] = axes.map(Dimension::si_symbol);
         diagnostics.push(
             Diagnostic::error("E0910", slot.span, "this is no compliance of a bench")
-                .label(format!("expected {} per {}", x.si_symbol(), y.si_symbol()))
-                .help(format!("write it as \"2e-6 {}\"", per([x, y]).replace(['(', ')'], "").replace("N*m", "N/m"))),
+                .label(format!("expected {x} per {y}, or other units of the same"))
+                .help(format!("write it as \"2e-6 {}\"", per(x, y))),
         );
     }
     found
+}
+
+impl Wanted {
+    /// Least number of points that tell something of so many parameters.
+    pub fn least_points(&self) -> usize {
+        self.design.len() + self.bench.len() + 2
+    }
+
+    /// Whether the search for numbers of the bench begins inside their ranges; an error where it does not.
+    pub fn begins_inside(&self, measurement: &Measurement, bench: &Bench, diagnostics: &mut Diagnostics) -> bool {
+        let before = diagnostics.errors();
+        for own in &self.bench {
+            let (value, typed) = match own.which {
+                BenchParameter::OffsetX => (bench.offset[0], &measurement.offset.x),
+                BenchParameter::OffsetY => (bench.offset[1], &measurement.offset.y),
+                BenchParameter::Compliance => (bench.compliance, &measurement.compliance),
+            };
+            if (own.limits.lower..=own.limits.upper).contains(&value) {
+                continue;
+            }
+            let mut error = Diagnostic::error("E0906", own.span, format!("`{}` does not lie in its range", own.path)).label("this range");
+            error = match typed {
+                Some(typed) => error.related(typed.span, "its value"),
+                None => error.label("this range; without a value in the measurement it is 0"),
+            };
+            diagnostics.push(error.help("the search starts at the value in the file: change it, or the range"));
+        }
+        diagnostics.errors() == before
+    }
 }
 
 impl Sought {

@@ -23,7 +23,7 @@ impl Named {
         if found.is_none() {
             let help = "`forcewright materials` lists the catalogue; or leave `use` out and give the values yourself";
             let near = closest(&name.value, materials::names());
-            let error = Diagnostic::error("E0308", name.span, "no such material in the catalogue").label("not known");
+            let error = Diagnostic::error("E0308", name.span, "no such material in the catalogue").label("not known").unknown_word();
             diagnostics.push(error.help(near.map_or_else(|| help.to_owned(), |n| format!("did you mean \"{n}\"? {help}"))));
         }
         found

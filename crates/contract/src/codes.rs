@@ -57,7 +57,7 @@ pub const CODES: &[Explanation] = &[
     code(
         "E0112",
         "a table of data is not understood",
-        "Data that a project names stands in a CSV file:\n\n    # measured on the bench\n    travel / mm, force / N\n    2.0, 5.1\n    4.0, 7.3\n\nThe first line that is no comment names the columns, each with its unit behind `/`. Below it stand numbers with decimal points, as many in each line as the header has columns. Columns are separated by commas, or by semicolons where the header has one. The message names line and column in the file.",
+        "Data that a project names stands in a CSV file:\n\n    # measured on the bench\n    travel / mm, force / N\n    2.0, 5.1\n    4.0, 7.3\n\nThe first line that is no comment names the columns, each with its unit behind `/`. Below it stand numbers with decimal points, as many in each line as the header has columns. Columns are separated by commas, or by semicolons where the header has one. A record of `[measurements]` may have decimal commas, with `decimal = \"comma\"` beside its file and semicolons between columns. The message names line and column in the file.",
     ),
     code(
         "E0201",
@@ -137,7 +137,7 @@ pub const CODES: &[Explanation] = &[
     code(
         "E0312",
         "a study's number is not found",
-        "`[optimise.variables]`, `[tolerance.parameters]` and the members of `[tolerance.groups]` name numbers by their paths, as `--set` does, or many at once by a pattern:\n\n    \"design.thickness\"         one number\n    \"design.nodes.n3.at\"       both coordinates of a point\n    \"design.nodes.n3.at.x\"     one of them\n    \"design.beams.*.bend\"      every bend coefficient of every beam\n    \"design.beams.b*.bend.1\"   the first of every beam whose name begins with b\n\nA pattern that means no number is an error, because it is nearly always a slip. A search changes numbers of `[design]` only: what is required, what it is made of and how it is loaded stay.",
+        "`[optimise.variables]`, `[tolerance.parameters]`, the members of `[tolerance.groups]` and `[calibrate.parameters]` name numbers by their paths, as `--set` does, or many at once by a pattern:\n\n    \"design.thickness\"         one number\n    \"design.nodes.n3.at\"       both coordinates of a point\n    \"design.nodes.n3.at.x\"     one of them\n    \"design.beams.*.bend\"      every bend coefficient of every beam\n    \"design.beams.b*.bend.1\"   the first of every beam whose name begins with b\n\nA pattern that means no number is an error, because it is nearly always a slip. What a study may change is said in the help: a search changes the design and the motor that is chosen for it; scatter, what it is made of and its errors too; a calibration, also losses, surroundings, bodies, and numbers of the bench (`bench.offset`, `bench.compliance`). What is required, and how it is loaded, stays in all of them.",
     ),
     code(
         "E0313",

@@ -211,7 +211,8 @@ pub fn named_rows_with<const N: usize>(
         let values = cells(line, place, separator);
         if values.len() != names.len() {
             let message = format!("{} values, {} are expected", values.len(), names.len());
-            let help = format!("separate the columns by `{separator}`, as in the header, and write decimal points");
+            let numbers = if decimal == Decimal::Comma { "commas" } else { "points" };
+            let help = format!("separate the columns by `{separator}`, as in the header, and write decimal {numbers}");
             diagnostics.push(broken(place, message, "this row", help));
             continue;
         }

@@ -4,7 +4,7 @@
 //! evaluators themselves.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
-use forcewright_study::differences::jacobian_with_steps;
+use forcewright_study::differences::{self, Steps};
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
 use forcewright_study::task::{self, Limit, Step, Task};
 
@@ -12,7 +12,7 @@ use crate::metrics::{self, Metrics, Values};
 use crate::objective::{Goal, goal_of};
 use crate::studies::{Free, Objective};
 
-/// Step of a difference, over the value.
+/// Step of a difference, over values that are right to rounding and a few digits more.
 const STEP: f64 = 1e-6;
 
 /// What a requirement asks of a metric.
@@ -86,6 +86,7 @@ pub struct Many<F: Measuring> {
     nominal: Values<F::Metrics>,
     outputs: Vec<Output>,
     measures: Vec<Measure>,
+    steps: Steps,
 }
 
 impl<F: Measuring> Many<F> {
@@ -132,6 +133,7 @@ impl<F: Measuring> Many<F> {
             metrics,
             nominal,
             outputs,
+            steps: Steps::new(STEP),
         })
     }
 
@@ -188,10 +190,12 @@ impl<F: Measuring> Evaluator for Many<F> {
             out.values.push(value.ok_or_else(|| Failure { reason: format!("{name} has no value") })?);
         }
         out.jacobian.clear();
-        if derivatives {
-            let steps: Vec<f64> = self.variables.iter().map(|v| STEP * v.nominal.abs().max(1e-3 * v.scale().min(1.0))).collect();
-            jacobian_with_steps(self, x, &steps, out, workspace)?;
-        }
+        if derivatives { self.steps.jacobian(self, x, out, workspace) } else { Ok(()) }
+    }
+
+    fn differentiate(&self, x: &[f64], rows: &[bool], out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure> {
+        self.steps.jacobian(self, x, out, workspace)?;
+        differences::keep(rows, self.variables.len(), &mut out.jacobian);
         Ok(())
     }
 

@@ -471,12 +471,18 @@ pub fn chosen(pattern: &Located<String>, roots: &[&str], numbers: &[Number], dia
     let eligible = |n: &Number| n.path.split('.').next().is_some_and(|root| roots.contains(&root));
     let found: Vec<usize> = (0..numbers.len()).filter(|i| eligible(&numbers[*i]) && matches(&pattern.value, &numbers[*i].path)).collect();
     if found.is_empty() {
-        let all = || numbers.iter().filter(|n| eligible(n)).map(|n| n.path.as_str());
+        // Numbers of a bench stand in no list: they are those of its measurement.
+        let bench: &[&str] = if roots.contains(&"bench") { &["bench.offset.x", "bench.offset.y", "bench.compliance"] } else { &[] };
+        let all = || numbers.iter().filter(|n| eligible(n)).map(|n| n.path.as_str()).chain(bench.iter().copied());
         let known = numbers.iter().any(|n| matches(&pattern.value, &n.path));
         let help = if known {
             // Sections that the file does not have are no help.
-            let there = roots.iter().filter(|root| numbers.iter().any(|n| n.path.split('.').next() == Some(root)));
-            format!("only numbers below {} take part", there.map(|r| format!("`{r}`")).collect::<Vec<_>>().join(" and "))
+            let there = |root: &&&str| **root == "bench" || numbers.iter().any(|n| n.path.split('.').next() == Some(root));
+            let there: Vec<String> = roots.iter().filter(there).map(|r| format!("`{r}`")).collect();
+            let there = there.split_last().map_or_else(String::new, |(last, others)| {
+                if others.is_empty() { last.clone() } else { format!("{} and {last}", others.join(", ")) }
+            });
+            format!("only numbers below {there} take part")
         } else {
             closest(&pattern.value, all()).map_or_else(
                 || format!("paths are written as `{}`, with `*` for any member", all().next().unwrap_or("design.thickness")),
@@ -484,9 +490,14 @@ pub fn chosen(pattern: &Located<String>, roots: &[&str], numbers: &[Number], dia
             )
         };
         diagnostics.push(
-            Diagnostic::error("E0312", pattern.span, format!("`{}` means no number of this file", pattern.value))
-                .label("no such number")
-                .help(help),
+            if known {
+                Diagnostic::error("E0312", pattern.span, format!("`{}` takes no part in this study", pattern.value))
+                    .label("not this number")
+            } else {
+                let message = format!("`{}` means no number of this file", pattern.value);
+                Diagnostic::error("E0312", pattern.span, message).label("no such number")
+            }
+            .help(help),
         );
     }
     found

@@ -2,6 +2,8 @@
 
 #[cfg(test)]
 mod coverage;
+#[cfg(test)]
+mod derivatives;
 mod document;
 mod page;
 mod picture;
@@ -13,13 +15,13 @@ use std::fmt;
 use std::path::Path;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Explanation, Sources, Span};
-use forcewright_contract::calibration::Wanted;
+use forcewright_contract::calibration::{Record, Wanted};
 use forcewright_contract::project::Files;
 use forcewright_model::{Axis, Report};
 use forcewright_study::calibrate::{
-    Bench, BenchParameter, CalibrateError, Curve, CurveError, Fit, Limits, Measured, Parameter, Plan, Stop, Watch, fit,
+    Bench, BenchParameter, CalibrateError, Curve, CurveError, Fit, Limits, Measured, Model, Parameter, Plan, Stop, Watch, fit,
 };
-use forcewright_study::evaluator::Evaluator;
+use forcewright_study::evaluator::{Evaluation, Evaluator};
 use forcewright_study::sampling::Confidence;
 
 use crate::{Loaded, Refused};
@@ -34,9 +36,14 @@ pub(crate) const CODES: &[Explanation] = &[
         text: "A calibration begins with the numbers of the file. That design does not reach the end of its travel, or cannot be built; `forcewright solve` says why. Exit code 3.",
     },
     Explanation {
+        code: "E0911",
+        title: "nothing to look for",
+        text: "A calibration changes at least one number: `parameters` names numbers of the design by their paths, or by patterns with `*`, and numbers of the bench.\n\n    [calibrate]\n    parameters = { \"material.young_modulus\" = {}, \"bench.offset.y\" = {} }",
+    },
+    Explanation {
         code: "W0901",
         title: "measured points are left out",
-        text: "Points that were measured where the design's curve is not computed, or on the other branch than the one asked for, do not count. Curves are computed from rest to `load.travel` (compliant), over `window` (cam), up to the required torque (cable drive, transmission).",
+        text: "Points that were measured where the design's curve is not computed, or on the other branch than the one asked for, do not count. Where a point lies is judged with the zero and the compliance of the bench that were found, if they were looked for, else with those of the file. Curves are computed from rest to `load.travel` (compliant), over `window` (cam), up to the required torque (cable drive, transmission).",
     },
     Explanation {
         code: "W0902",
@@ -46,7 +53,7 @@ pub(crate) const CODES: &[Explanation] = &[
     Explanation {
         code: "W0903",
         title: "parameters are hardly told apart",
-        text: "The errors of two estimates go together almost entirely: if one is too large, so is the other, or too small. Each interval is right by itself; their combination is known far better than either.",
+        text: "The errors of two estimates go together almost entirely: if one is too large, so is the other, or too small. Each interval is right by itself; their combination is known far better than either.\n\nIf the combination is what matters, nothing needs to be done. Else measure where the two act differently (further along the travel, the other way, another load), or take one out of the calibration and type what is known of it; a `prior` narrows the other only as far as it is sure itself.",
     },
     Explanation {
         code: "W0904",
@@ -68,6 +75,16 @@ pub(crate) const CODES: &[Explanation] = &[
         title: "the measurement contradicts a prior",
         text: "What was measured and the prior differ by more than three standard deviations of their difference. Either the prior was too sure, or the model lacks something that this parameter tries to make up for.",
     },
+    Explanation {
+        code: "W0908",
+        title: "points beyond the end of the curve",
+        text: "With the zero or the compliance of the bench that was found, points that count lie beyond the places for which the design's curve is computed, and leaving them out would bring them back in: the choice of points and the estimate do not settle. There the curve goes straight on, which is no model of anything. Compute further (`load.travel`, `window`, the required torque), or leave out the ends of the record.",
+    },
+    Explanation {
+        code: "W0909",
+        title: "too few points to judge",
+        text: "Whether the parameters explain a curve shows in what they leave: with few points beyond the number of parameters any pattern can be chance. Nothing contradicts the estimates, and nothing confirms the model. Measure at more places; a dozen beyond the number of parameters is enough.",
+    },
 ];
 
 /// Why there are no parameters.
@@ -75,15 +92,14 @@ pub(crate) const CODES: &[Explanation] = &[
 pub enum NoCalibration {
     /// The project asks for what cannot be done.
     Refused(Refused),
-    /// The search could not begin.
-    Study(CalibrateError),
+    /// The search could not begin: the design of the file has no curve.
+    NoStart(Refused),
 }
 
 impl fmt::Display for NoCalibration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Refused(refused) => f.write_str(&refused.render(false)),
-            Self::Study(error) => error.fmt(f),
+            Self::Refused(refused) | Self::NoStart(refused) => f.write_str(&refused.render(false)),
         }
     }
 }
@@ -100,6 +116,8 @@ pub struct Calibrated {
     pub unit_sizes: Vec<f64>,
     /// The points that counted.
     pub points: Points,
+    /// How many of them lie beyond the ends of the curve, on the bench that was found.
+    pub beyond: usize,
     /// Name of the measurement.
     pub measurement: String,
     /// Abscissa and ordinate, in the units of the file.
@@ -126,8 +144,13 @@ struct Ready {
     bench: Bench,
     axes: [Axis; 2],
     measurement: String,
+    record: Record,
+    branch: &'static str,
     place: Span,
 }
+
+/// Choices of points, at most, each with the bench that the last one led to.
+const MOST_CHOICES: usize = 8;
 
 impl Loaded {
     /// Looks for the parameters of `[calibrate]` that bring the design's curve to what was measured. With a `target`, the project file
@@ -140,29 +163,32 @@ impl Loaded {
         let mut diagnostics = Diagnostics::default();
         let before = self.solve(&self.name(), "", &mut |_| true);
         let ready = self.calibration(&before, &mut diagnostics).filter(|_| !diagnostics.has_errors());
-        let Some(ready) = ready else { return Err(NoCalibration::Refused(self.refused(diagnostics))) };
+        let Some(mut ready) = ready else { return Err(NoCalibration::Refused(self.refused(diagnostics))) };
         let variant = self.variant_of_estimates();
-        let written = |values: &[f64]| {
+        let written = |ready: &Ready, values: &[f64]| {
             let Some(target) = target else { return Ok(None) };
             self.with_estimates((files, target), &variant, &ready.written(values)).map(Some).map_err(NoCalibration::Refused)
         };
-        let parameters = ready.parameters();
         // What cannot be written is refused before the work, not after.
-        written(&parameters.iter().map(|p| p.start).collect::<Vec<_>>())?;
+        written(&ready, &ready.parameters().iter().map(|p| p.start).collect::<Vec<_>>())?;
         let section = &self.understood.studies().calibrate;
         let plan = Plan { loss: section.loss(), confidence: section.confidence(), ..Plan::default() };
-        let found = ready.fitted(&parameters, [&ready.points.y, &ready.points.raw], &plan, watch).map_err(|error| match error {
-            NoFit::NoCurve(error) => self.no_curve(&error, ready.place),
-            NoFit::Study(error) => NoCalibration::Study(error),
-        })?;
+        let found = ready.choose(&plan, watch).and_then(|()| {
+            let parameters = ready.parameters();
+            ready.fitted(&parameters, [&ready.points.y, &ready.points.raw], &plan, watch)
+        });
+        let found = found.map_err(|error| self.no_fit(&error, ready.place))?;
         let values: Vec<f64> = found.parameters.iter().map(|p| p.estimate.value).collect();
-        let text = written(&values)?;
-        let (units, unit_sizes) = wording::units(&ready.wanted);
+        let text = written(&ready, &values)?;
+        let (units, unit_sizes) = wording::units(&ready.wanted, &ready.axes);
+        let beyond = ready.points.beyond(&ready.bench_at(&values));
+        ready.say_what_is_left_out(&mut diagnostics);
         let mut calibrated = Calibrated {
             fit: found,
             units,
             unit_sizes,
             points: ready.points,
+            beyond,
             measurement: ready.measurement,
             axes: ready.axes,
             confidence: plan.confidence,
@@ -176,9 +202,21 @@ impl Loaded {
         Ok(calibrated)
     }
 
-    fn no_curve(&self, error: &CurveError, place: Span) -> NoCalibration {
+    /// Why there is no fit, at the section that asks for one.
+    fn no_fit(&self, error: &NoFit, place: Span) -> NoCalibration {
         let mut diagnostics = Diagnostics::default();
-        diagnostics.push(no_curve(place, &error.to_string()));
+        match error {
+            NoFit::NoCurve(error) => diagnostics.push(no_curve(place, &error.to_string())),
+            NoFit::Study(error @ CalibrateError::NoStart(_)) => {
+                let help = "`forcewright solve` says how far the design of the file comes";
+                diagnostics.push(Diagnostic::error("E0907", place, error.to_string()).label("begins with it").help(help));
+                return NoCalibration::NoStart(self.refused(diagnostics));
+            }
+            NoFit::Study(error) => {
+                let help = "parameters need a value inside a range, and two points more than there are of them";
+                diagnostics.push(Diagnostic::error("E0906", place, error.to_string()).label("this calibration").help(help));
+            }
+        }
         NoCalibration::Refused(self.refused(diagnostics))
     }
 
@@ -195,6 +233,14 @@ impl Loaded {
             return None;
         };
         let place = present.span;
+        if section.parameters.is_empty() {
+            diagnostics.push(
+                Diagnostic::error("E0911", self.place_of(&["calibrate", "parameters"]), "no number is looked for")
+                    .label("nothing stands here")
+                    .help("name one, `parameters = { \"material.young_modulus\" = {} }`, or one of the bench, `\"bench.offset.y\" = {}`"),
+            );
+            return None;
+        }
         let measurement = section.of(&studies.measurements, place, diagnostics)?;
         let probe = self.understood.evaluator(&[], diagnostics)?;
         let Some(axes) = axes(&*probe, before) else {
@@ -208,13 +254,16 @@ impl Loaded {
         let bench = measurement.value.bench(dimensions, diagnostics);
         let record = measurement.record(dimensions, ascending, diagnostics);
         let (wanted, bench, record) = (wanted?, bench?, record?);
+        if !wanted.begins_inside(&measurement.value, &bench, diagnostics) {
+            return None;
+        }
         let free: Vec<_> = wanted.design.iter().map(|d| d.free.clone()).collect();
         // What the probe said is said again.
         *diagnostics = Diagnostics::default();
         let evaluator = self.understood.evaluator(&free, diagnostics)?;
         let branch = section.branch.as_ref().map_or("both", |b| b.value);
         let points = Points::of(&record, &*evaluator, &bench, branch);
-        let (count, least) = (points.x.len(), wanted.design.len() + wanted.bench.len() + 2);
+        let (count, least) = (points.x.len(), wanted.least_points());
         let ranges = points.ranges(&record, &axes, branch);
         if count < least {
             let named = measurement.value.file.as_ref().map_or(place, |f| f.span);
@@ -225,20 +274,10 @@ impl Loaded {
             );
             return None;
         }
-        if points.left_out > 0 {
-            diagnostics.push(
-                Diagnostic::warning(
-                    "W0901",
-                    place,
-                    format!("{} of {} measured points do not count: {ranges}", points.left_out, record.x.len()),
-                )
-                .label("of this calibration")
-                .help(REACH),
-            );
-        }
         let [mut x, mut y] = axes;
         [x.display, y.display] = record.units.clone();
-        Some(Ready { evaluator, wanted, points, bench, axes: [x, y], measurement: measurement.name.value.clone(), place })
+        let (axes, measurement) = ([x, y], measurement.name.value.clone());
+        Some(Ready { evaluator, wanted, points, bench, axes, measurement, record, branch, place })
     }
 }
 
@@ -251,7 +290,76 @@ enum NoFit {
 impl Ready {
     /// What is looked for, as the search sees it.
     fn parameters(&self) -> Vec<Parameter> {
-        parameters(&self.wanted, &self.points, &self.bench)
+        let mut all = parameters(&self.wanted, &self.points, &self.bench);
+        self.give_sizes(&mut all);
+        all
+    }
+
+    /// A number that is 0 has no size of its own: a large change of it is one that changes the curve by as much as there is, if its range is
+    /// not less.
+    fn give_sizes(&self, all: &mut [Parameter]) {
+        let without = |p: &Parameter| p.start.abs() <= 0.0 && !p.name.starts_with("bench.");
+        if !all.iter().any(without) {
+            return;
+        }
+        let start: Vec<f64> = all.iter().map(|p| p.start).collect();
+        let mut out = Evaluation::default();
+        let known = self.curve().is_ok_and(|model| model.predict(&start, true, &mut model.room(), &mut out).is_ok());
+        let size = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
+        let columns = all.len();
+        for (column, parameter) in all.iter_mut().enumerate().filter(|(_, p)| known && without(p)) {
+            let slope = size(&mut out.jacobian.iter().skip(column).step_by(columns).copied());
+            let own = size(&mut self.points.y.iter().copied()) / slope;
+            if own.is_finite() && own > 0.0 {
+                parameter.scale = parameter.scale.min(own);
+            }
+        }
+    }
+
+    /// The bench with what was found of it.
+    fn bench_at(&self, values: &[f64]) -> Bench {
+        let inner = self.evaluator.variables().len();
+        let mut bench = self.bench;
+        self.wanted.bench.iter().zip(values.iter().skip(inner)).for_each(|(own, value)| bench.set(own.which, *value));
+        bench
+    }
+
+    /// Chooses the points that lie where the curve is computed on the bench that they lead to: with the zero of the file some would be kept
+    /// or dropped wrongly.
+    fn choose(&mut self, plan: &Plan, watch: Watch<'_>) -> Result<(), NoFit> {
+        if !self.wanted.bench.iter().any(|b| b.which != BenchParameter::OffsetY) {
+            return Ok(());
+        }
+        let quick = Plan { profiles: false, ..plan.clone() };
+        let mut before: Vec<Points> = Vec::new();
+        for _ in 0..MOST_CHOICES {
+            let found = self.fitted(&self.parameters(), [&self.points.y, &self.points.raw], &quick, watch)?;
+            let values: Vec<f64> = found.parameters.iter().map(|p| p.estimate.value).collect();
+            let next = Points::of(&self.record, &*self.evaluator, &self.bench_at(&values), self.branch);
+            let same = next.branches == self.points.branches;
+            if same || found.stop == Stop::Interrupted || next.x.len() < self.wanted.least_points() {
+                return Ok(());
+            }
+            before.push(std::mem::replace(&mut self.points, next));
+            if before.iter().any(|other| other.branches == self.points.branches) {
+                break;
+            }
+        }
+        // Some points lead to a bench that puts them beyond the end, and without them to one that does not: they are kept, and told of.
+        let most = before.into_iter().max_by_key(|points| points.x.len());
+        if let Some(most) = most.filter(|most| most.x.len() > self.points.x.len()) {
+            self.points = most;
+        }
+        Ok(())
+    }
+
+    fn say_what_is_left_out(&self, diagnostics: &mut Diagnostics) {
+        let Points { left_out, .. } = self.points;
+        if left_out > 0 {
+            let ranges = self.points.ranges(&self.record, &self.axes, self.branch);
+            let message = format!("{left_out} of {} measured points do not count: {ranges}", self.record.x.len());
+            diagnostics.push(Diagnostic::warning("W0901", self.place, message).label("of this calibration").help(REACH));
+        }
     }
 
     /// The curve at the places of the points.
@@ -310,7 +418,6 @@ fn parameters(wanted: &Wanted, points: &Points, bench: &Bench) -> Vec<Parameter>
         };
         let or = |typed: f64, usual: f64| if typed.is_finite() { typed } else { usual };
         let limits = Limits { lower: or(b.limits.lower, usual[0].min(start)), upper: or(b.limits.upper, usual[1].max(start)) };
-        let start = start.clamp(limits.lower, limits.upper);
         Parameter { name: b.path.to_owned(), start, limits, scale, prior: b.prior }
     });
     of_design.chain(of_bench).collect()

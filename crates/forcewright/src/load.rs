@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Severity, Sources};
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use forcewright_base::text::closest;
 use forcewright_contract::family::{Family, Progress, Understood};
 use forcewright_contract::project::{Choices, Files, Project};
+use forcewright_contract::tree::Value;
 use forcewright_model::{Report, Warning};
 use sha2::{Digest, Sha256};
 
@@ -92,6 +93,20 @@ impl Loaded {
                 Err(Refused { diagnostics: project.diagnostics, sources: project.sources, file_missing: project.file_missing })
             }
         }
+    }
+
+    /// Where a key stands, or the last table on the way to it; the beginning of the file without any.
+    pub(crate) fn place_of(&self, path: &[&str]) -> Span {
+        let (mut table, mut place) = (&self.project.tree, self.project.root);
+        for key in path {
+            let Some(entry) = table.get(key) else { break };
+            place = entry.key_span;
+            match &entry.item.value {
+                Value::Table(inner) => table = inner,
+                _ => break,
+            }
+        }
+        place
     }
 
     /// The project as refused for what was found later.

@@ -4,6 +4,7 @@
 //! the goals, its checks the limits. So the study knows no family, and every point of the front is verified.
 
 mod document;
+mod lines;
 mod pages;
 mod values;
 
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Severity};
+use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Severity, Span};
 use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Unit};
 use forcewright_contract::describe::Located;
@@ -36,6 +37,8 @@ const MOST_FILES: usize = 24;
 /// Generations without growth of the front after which a search ends, and what is none, relative to its hypervolume.
 const PATIENCE: usize = 15;
 const LEAST_GAIN: f64 = 1e-4;
+/// What settings of a design are called where they are wrong.
+const VARIED: &str = "[pareto.vary]";
 /// What a check that could not be assessed, or has no margin, is missed by.
 const UNKNOWN: f64 = 1.0;
 
@@ -87,6 +90,8 @@ pub struct Pareto {
     pub all_checks: bool,
     /// The design of the file.
     pub before: Report,
+    /// What the file has of each choice, as typed.
+    present: Vec<Option<String>>,
     /// SHA-256 of the project.
     pub input_sha256: String,
     metrics: Vec<MetricColumn>,
@@ -162,8 +167,8 @@ impl Loaded {
         let choices: Vec<Choice> = section.vary.iter().filter_map(|m| Choice::of(m, numbers, &mut diagnostics)).collect();
         if choices.is_empty() && !diagnostics.has_errors() {
             diagnostics.push(
-                Diagnostic::error("E0921", self.project.root, "nothing is varied")
-                    .label("in this file")
+                Diagnostic::error("E0921", self.place_of(&["pareto", "vary"]), "nothing is varied")
+                    .label("here")
                     .help("add `[pareto.vary]` with a path and its values: `\"design.thickness\" = { range = [\"0.8 mm\", \"1.2 mm\"] }`"),
             );
         }
@@ -222,7 +227,8 @@ impl Loaded {
             }
         }
         if !(2..=3).contains(&goals.len()) && !diagnostics.has_errors() {
-            let place = section.minimise.as_ref().or(section.maximise.as_ref()).map_or(self.project.root, |names| names.span);
+            let place =
+                section.minimise.as_ref().or(section.maximise.as_ref()).map_or_else(|| self.place_of(&["pareto"]), |names| names.span);
             let message = format!("a trade-off has two or three goals, not {}", goals.len());
             let help = "name metrics in `minimise` and `maximise`; with one goal, `forcewright optimise` finds more with less work";
             diagnostics.push(Diagnostic::error("E0920", place, message).label("here").help(help));
@@ -275,27 +281,41 @@ impl ParetoTask<'_> {
         let mut choices = self.project.project.choices.clone();
         choices.set.extend_from_slice(settings);
         let name = self.project.name();
-        Loaded::from_file(&self.files, Path::new(&name), &choices).map_err(|refused| refused.typed_as("[pareto.vary]", settings.len()))
+        Loaded::from_file(&self.files, Path::new(&name), &choices).map_err(|refused| refused.typed_as(VARIED, settings.len()))
     }
 
     /// Whether a value is no value of its key, or its key no key. Values that the project cannot have (out of range, a design that does not
     /// close) are none: such designs have no values.
     fn find_mistakes(&self) -> Result<(), Refused> {
+        let mut found: Vec<Diagnostic> = Vec::new();
         for choice in &self.choices {
-            for value in choice.telling() {
+            for (index, value) in choice.telling().into_iter().enumerate() {
                 let Err(refused) = self.load(&[format!("{}={value}", choice.key)]) else { continue };
-                let typed = |d: &Diagnostic| {
-                    let source = d.span.and_then(|s| refused.sources.get(s.source));
-                    source.is_some_and(|s| s.name == "[pareto.vary]")
+                // What was typed for this run stands in the file: its key, or the value.
+                let place = |span: Span| {
+                    let typed = refused.sources.get(span.source).is_some_and(|s| s.name == VARIED);
+                    typed.then(|| if span.start <= choice.key.len() { choice.place } else { choice.place_of(index) })
                 };
-                // Codes of reading; a number out of range is a number.
-                let reading = |d: &Diagnostic| d.severity == Severity::Error && d.code < "E0400" && d.code != "E0204";
-                if refused.diagnostics.in_file_order().iter().any(|d| reading(d) && typed(d)) {
-                    return Err(refused);
+                // Codes of reading, and words that nobody knows; a number out of range is a number.
+                let slip = |d: &Diagnostic| d.severity == Severity::Error && (d.unknown_word || d.code < "E0400" && d.code != "E0204");
+                for own in refused.diagnostics.in_file_order().into_iter().filter(|d| slip(d)) {
+                    let Some(span) = own.span.and_then(place) else { continue };
+                    let related = own.related.iter().filter_map(|(s, text)| Some((place(*s)?, text.clone()))).collect();
+                    let told = Diagnostic { span: Some(span), related, ..own.clone() };
+                    if !found.iter().any(|d| (d.code, d.span, &d.message) == (told.code, told.span, &told.message)) {
+                        found.push(told);
+                    }
                 }
             }
         }
-        Ok(())
+        if found.is_empty() {
+            return Ok(());
+        }
+        let mut diagnostics = Diagnostics::default();
+        for told in found {
+            diagnostics.push(told);
+        }
+        Err(self.project.refused(diagnostics))
     }
 
     /// Whether a design must keep a check: requirements, and what the family checks by itself if all are asked for.
@@ -332,7 +352,8 @@ impl ParetoTask<'_> {
         };
         let found = search(&run, &self.settings, &starts, &watching).map_err(|malformed| {
             let mut diagnostics = Diagnostics::default();
-            diagnostics.push(Diagnostic::error("E0921", self.project.project.root, malformed.to_string()).label("in this file"));
+            let place = self.project.place_of(&["pareto", "vary"]);
+            diagnostics.push(Diagnostic::error("E0921", place, malformed.to_string()).label("here"));
             self.project.refused(diagnostics)
         })?;
         let known = run.known.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -345,6 +366,7 @@ impl ParetoTask<'_> {
             asked: self.settings.clone(),
             all_checks: self.all_checks,
             before: self.before.clone(),
+            present: self.choices.iter().map(|c| c.typed(&self.project.project.tree)).collect(),
             input_sha256: self.project.input_sha256.clone(),
             metrics: self.metrics.clone(),
         })

@@ -108,7 +108,8 @@ fn files_are_what_was_found() {
         roxmltree::Document::parse_with_options(&page, roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() }).unwrap();
     let links: Vec<&str> =
         parsed.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "a"))).filter_map(|n| n.attribute("href")).collect();
-    assert_eq!(links.len(), front.designs.len());
+    // Its point, and its line.
+    assert_eq!(links.len(), 2 * front.designs.len());
     for link in links {
         let id = link.strip_prefix('#').unwrap();
         assert_eq!(parsed.descendants().filter(|n| n.attribute("id") == Some(id)).count(), 1, "{link}");
@@ -287,4 +288,37 @@ fn what_cannot_be_asked_is_refused_by_name() {
     assert_eq!(vary("design.depht", "range = [\"5 mm\", \"9 mm\"]").0, "E0301");
     assert_eq!(vary("design.depth", "range = [\"5 N\", \"9 N\"]").0, "E0201");
     assert_eq!(vary("design.nodes.a.support", "among = [\"clamped\", \"clampt\"]").0, "E0303");
+}
+
+/// What `refused` says, rendered.
+fn said(text: &str) -> String {
+    let project = loaded(text);
+    project.pareto_task(&DiskFiles, (None, None, None)).err().unwrap().render(false)
+}
+
+/// A slip is refused before the search, at its place in the file: a key, a word, a value.
+#[test]
+fn slips_of_what_is_varied_have_their_places() {
+    let vary = |key: &str, values: &str| strip(&format!("{STRIP}\"{key}\" = {{ {values} }}\n"));
+    for (text, code, place, help) in [
+        (vary("design.depht", "range = [\"5 mm\", \"9 mm\"]"), "E0301", "\"design.depht\"", "depth"),
+        (vary("design.depth", "range = [\"5 N\", \"9 N\"]"), "E0201", "\"5 N\"", "mm"),
+        (vary("design.nodes.a.support", "among = [\"clamped\", \"clampt\"]"), "E0303", "\"clampt\"", "clamped"),
+        (vary("material.use", "among = [\"C75S\", \"POM-D\"]"), "E0308", "\"POM-D\"", "POM-C"),
+        (
+            gallery::find("pareto-handle").unwrap().text.replace("\"steel 7x19 0.63 mm\"]", "\"stel 7x19 0.63 mm\"]"),
+            "E0703",
+            "\"stel 7x19 0.63 mm\"",
+            "did you mean \"steel 7x19\"?",
+        ),
+    ] {
+        let said = said(&text);
+        let before = &text[..text.rfind(place).unwrap_or_else(|| panic!("{place}"))];
+        let (line, column) = (before.matches('\n').count() + 1, before.rsplit('\n').next().unwrap().chars().count() + 1);
+        assert!(said.contains(&format!("error[{code}]")) && said.contains(help), "{said}");
+        assert!(said.contains(&format!(":{line}:{column}")), "{line}:{column}: {said}");
+    }
+    // What is no slip, but no design either, is none of this: such designs have no values.
+    let thick = vary("design.depth", "range = [\"5 mm\", \"9 m\"]");
+    assert!(loaded(&thick).pareto_task(&DiskFiles, (None, None, None)).is_ok());
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use clap::ArgMatches;
 use forcewright::base::text::visible;
 use forcewright::base::units::format_number;
-use forcewright::study::calibrate::{CalibrateError, Progress, Stop};
+use forcewright::study::calibrate::{Progress, Stop};
 use forcewright::{Calibrated, DiskFiles, Loaded, NoCalibration};
 
 use super::solve::{quote, repeat_command};
@@ -46,7 +46,10 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let found = match found {
         Ok(found) => found,
         Err(NoCalibration::Refused(refused)) => return refuse(&refused, as_json),
-        Err(NoCalibration::Study(error)) => return no_study(&error, as_json),
+        Err(NoCalibration::NoStart(refused)) => {
+            refuse(&refused, as_json);
+            return exit::NOT_CONVERGED;
+        }
     };
     output::narrate(&found.diagnostics.render(&found.sources, output::colour_on_stderr()));
     let document = output::json_text(&found.document());
@@ -68,12 +71,6 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         Stop::Converged => exit::MISSED,
         Stop::Stalled | Stop::RoundLimit | Stop::NoStart(_) => exit::NOT_CONVERGED,
     }
-}
-
-/// Says why nothing was fitted; the exit code for it.
-fn no_study(error: &CalibrateError, json: bool) -> u8 {
-    output::complain("E0907", &error.to_string(), "`forcewright solve` says how far the design of the file comes", json);
-    exit::NOT_CONVERGED
 }
 
 /// Tells where the search stands.
@@ -120,6 +117,9 @@ fn summary(found: &Calibrated) -> String {
     rows.extend(found.rows().into_iter().map(Vec::from));
     out.push_str(&columns(&rows, &[Align::Left, Align::Right, Align::Right, Align::Right, Align::Right, Align::Left]));
     let _ = writeln!(out, "\n{}", found.residual_verdict());
+    if let Some(far) = found.hardly_counting() {
+        let _ = writeln!(out, "{far}");
+    }
     let _ = writeln!(out, "{}", found.verdict());
     out
 }

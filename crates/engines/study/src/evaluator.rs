@@ -24,7 +24,8 @@ pub struct Variable {
 }
 
 impl Variable {
-    /// Width of its range where that is finite, else the size of its value: a step that matters.
+    /// Width of its range where that is finite, else the size of its value: what a search counts in. Steps of differences come from elsewhere
+    /// ([`crate::differences::Steps`]): a range may be far wider than what matters.
     pub fn scale(&self) -> f64 {
         let width = self.upper - self.lower;
         if width.is_finite() && width > 0.0 { width } else { self.nominal.abs().max(1e-12) }
@@ -140,8 +141,7 @@ pub trait Evaluator: Send + Sync {
     /// As [`Evaluator::evaluate`].
     fn differentiate(&self, x: &[f64], rows: &[bool], out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure> {
         self.evaluate(x, true, out, workspace)?;
-        let columns = self.variables().len().max(1);
-        out.jacobian.chunks_exact_mut(columns).zip(rows).filter(|(_, wanted)| !**wanted).for_each(|(row, _)| row.fill(0.0));
+        crate::differences::keep(rows, self.variables().len(), &mut out.jacobian);
         Ok(())
     }
 

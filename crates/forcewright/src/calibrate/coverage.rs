@@ -47,6 +47,9 @@ const COMPLIANT: Case = Case {
     profiles: 5,
 };
 
+/// A thickness without a range, which the language lets go from nothing to a metre.
+const THICKNESS: Case = Case { parameters: "\"design.thickness\" = {}, \"bench.offset\" = {}", ..COMPLIANT };
+
 const CAM: Case = Case {
     example: "sanchez-2-springs",
     columns: ["s / mm", "force / N"],
@@ -228,6 +231,11 @@ fn intervals_of_a_flexible_mechanism_contain_the_truth() {
 }
 
 #[test]
+fn intervals_of_a_thickness_contain_the_truth() {
+    roughly(&THICKNESS);
+}
+
+#[test]
 fn intervals_of_a_cam_contain_the_truth() {
     roughly(&CAM);
 }
@@ -246,6 +254,12 @@ fn intervals_of_a_transmission_contain_the_truth() {
 #[ignore = "2000 repetitions take minutes"]
 fn intervals_of_a_flexible_mechanism_in_2000_repetitions() {
     exactly(&COMPLIANT);
+}
+
+#[test]
+#[ignore = "2000 repetitions take minutes"]
+fn intervals_of_a_thickness_in_2000_repetitions() {
+    exactly(&THICKNESS);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use forcewright_study::calibrate::{Against, Bound, Stop};
 use serde_json::{Value, json};
 
 use super::Calibrated;
+use super::wording::HARDLY;
 
 /// Version of the document's shape.
 const SCHEMA: u32 = 1;
@@ -29,6 +30,8 @@ impl Calibrated {
             "measurement": self.measurement,
             "points": self.points.x.len(),
             "left_out": self.points.left_out,
+            "beyond": self.beyond,
+            "hardly_counting": self.fit.weights.iter().filter(|w| **w < HARDLY).count(),
             "confidence": self.confidence.level(),
             "noise": { "value": number(fit.noise), "unit": self.axes[1].dimension.si_symbol() },
             "degrees_of_freedom": number(fit.degrees),
@@ -109,7 +112,7 @@ impl Calibrated {
             let own = first..first + branch.x.len();
             first = own.end;
             let of = |values: &[f64]| values[own.clone()].iter().map(|v| number(*v)).collect::<Vec<_>>();
-            json!({ "name": name, "x": of(&self.points.x), "measured": of(&self.points.raw), "before": of(&self.fit.before), "after": of(&self.fit.after) })
+            json!({ "name": name, "x": of(&self.points.x), "weights": of(&self.fit.weights), "measured": of(&self.points.raw), "before": of(&self.fit.before), "after": of(&self.fit.after) })
         });
         json!({
             "x": { "name": x.name, "unit": x.dimension.si_symbol() },

@@ -18,6 +18,9 @@ impl Calibrated {
         let figures = |all: Vec<forcewright_model::Figure>| all.into_iter().map(|f| StudyPart::Figure(Box::new(f))).collect();
         let mut left: Vec<StudyPart> = figures(vec![self.residuals()]);
         left.insert(0, StudyPart::Text(self.residual_verdict()));
+        if let Some(far) = self.hardly_counting() {
+            left.insert(1, StudyPart::Text(far));
+        }
         left.push(StudyPart::Text(TESTS.to_owned()));
         left.push(StudyPart::Text(self.neighbours()));
         let sections = vec![

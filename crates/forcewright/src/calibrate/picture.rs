@@ -8,13 +8,21 @@ use super::Calibrated;
 const MOST_POINTS: usize = 400;
 
 impl Calibrated {
-    /// Points of each branch in the order of their abscissae, thinned out.
-    fn orders(&self) -> Vec<Vec<usize>> {
+    /// Points of each branch in the order of their abscissae.
+    pub(super) fn sorted(&self) -> Vec<Vec<usize>> {
         let mut first = 0;
         let branches = self.points.branches.iter().map(|branch| {
             let mut own: Vec<usize> = (first..first + branch.x.len()).collect();
             first += branch.x.len();
             own.sort_by(|a, b| self.points.x[*a].total_cmp(&self.points.x[*b]));
+            own
+        });
+        branches.collect()
+    }
+
+    /// The same, thinned out.
+    fn orders(&self) -> Vec<Vec<usize>> {
+        let branches = self.sorted().into_iter().map(|own| {
             let step = own.len().div_ceil(MOST_POINTS).max(1);
             let last = own.last().copied();
             let mut thin: Vec<usize> = own.into_iter().step_by(step).collect();

@@ -42,11 +42,7 @@ impl Points {
         };
         let stations = evaluator.stations(0);
         let computed = stations.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], s| [a.min(*s), b.max(*s)]);
-        let slack = AT_THE_END * (computed[1] - computed[0]);
-        let inside = |i: &usize| {
-            let at = record.x[*i] - bench.offset[0] - bench.compliance * record.raw[*i];
-            at >= computed[0] - slack && at <= computed[1] + slack
-        };
+        let inside = |i: &usize| within(computed, place(bench, record.x[*i], record.raw[*i]));
         let ways = [(Direction::Loading, "loading", 0), (Direction::Unloading, "unloading", usize::from(two))];
         let mut found =
             Self { branches: Vec::new(), names: Vec::new(), x: Vec::new(), y: Vec::new(), raw: Vec::new(), left_out: 0, computed };
@@ -67,6 +63,11 @@ impl Points {
         found
     }
 
+    /// How many of the points lie beyond the ends of the curve on a bench.
+    pub(super) fn beyond(&self, bench: &Bench) -> usize {
+        self.x.iter().zip(&self.raw).filter(|(x, raw)| !within(self.computed, place(bench, **x, **raw))).count()
+    }
+
     /// Where points count, and where they were measured.
     pub(super) fn ranges(&self, record: &Record, [x, _]: &[Axis; 2], branch: &str) -> String {
         let show = |si: f64| format_si(si, &record.units[0], 4);
@@ -75,6 +76,17 @@ impl Points {
         let [from, to] = self.computed.map(show);
         format!("the curve is computed for {} from {from} to {to}{part}, and was measured from {} to {}", x.label, show(low), show(high))
     }
+}
+
+/// Where the mechanism is when a bench shows these, without what the bench takes itself.
+fn place(bench: &Bench, x: f64, y: f64) -> f64 {
+    x - bench.offset[0] - bench.compliance * (y - bench.offset[1])
+}
+
+/// Whether a place lies between the ends of a curve.
+fn within([from, to]: [f64; 2], at: f64) -> bool {
+    let slack = AT_THE_END * (to - from);
+    at >= from - slack && at <= to + slack
 }
 
 /// What decides on it.

@@ -1,9 +1,10 @@
 //! What was found, in words.
 
 use forcewright_base::diagnostics::{Diagnostic, Span};
-use forcewright_base::units::{Unit, format_number, format_si};
-use forcewright_contract::calibration::Wanted;
-use forcewright_study::calibrate::{Against, Bound, Loose, Stop};
+use forcewright_base::units::{format_number, format_si};
+use forcewright_contract::calibration::{Wanted, per};
+use forcewright_model::Axis;
+use forcewright_study::calibrate::{Against, BenchParameter, Bound, Loose, Stop};
 
 use super::Calibrated;
 
@@ -11,22 +12,23 @@ use super::Calibrated;
 const CONTRADICTION: f64 = 3.0;
 /// Too few points to tell anything.
 const TOO_FEW: &str = "Too few points to judge";
+/// Weight below which a point hardly counts.
+pub(super) const HARDLY: f64 = 0.1;
+/// Most places at which such points are named.
+const MOST_PLACES: usize = 6;
 /// Digits of an estimate whose interval is as wide as itself, and at most.
 const DIGITS: [usize; 2] = [2, 12];
 
-/// Symbols in which people are shown parameters, and their sizes in SI.
-pub(super) fn units(wanted: &Wanted) -> (Vec<String>, Vec<f64>) {
+/// Symbols in which people are shown parameters, and their sizes in SI: of the bench, those of the columns that were measured.
+pub(super) fn units(wanted: &Wanted, [x, y]: &[Axis; 2]) -> (Vec<String>, Vec<f64>) {
     let of_design = wanted.design.iter().map(|d| {
         let unit = &d.free.number.unit;
         (if unit.symbol() == "1" { String::new() } else { unit.pretty() }, unit.to_si(1.0))
     });
-    let handy = |si: &str| match si {
-        "m" => "mm".to_owned(),
-        other => other.to_owned(),
-    };
-    let of_bench = wanted.bench.iter().map(|b| {
-        let unit = Unit::parse(&handy(&b.unit));
-        unit.map_or_else(|_| (b.unit.clone(), 1.0), |u| (u.pretty(), u.to_si(1.0)))
+    let of_bench = wanted.bench.iter().map(|b| match b.which {
+        BenchParameter::OffsetX => (x.display.pretty(), x.display.to_si(1.0)),
+        BenchParameter::OffsetY => (y.display.pretty(), y.display.to_si(1.0)),
+        BenchParameter::Compliance => (per(&x.display.pretty(), &y.display.pretty()), x.display.to_si(1.0) / y.display.to_si(1.0)),
     });
     of_design.chain(of_bench).unzip()
 }
@@ -107,11 +109,11 @@ impl Calibrated {
                     Against::Smooth => "a smooth curve through the residuals",
                 };
                 let [above, below] = l.degrees;
-                format!("lack of fit against {against}: F({above}, {below}) = {}, p = {}; ", format_number(l.ratio, 3), probability(l.p))
+                format!("lack of fit against {against}: F({above}, {below}) = {}, p {}; ", format_number(l.ratio, 3), probability(l.p))
             });
             let runs = residuals.runs;
             let expected = format_number(runs.expected, 3);
-            format!("{lack}{} runs of signs, {expected} expected, p = {}", runs.observed, probability(runs.p))
+            format!("{lack}{} runs of signs, {expected} expected, p {}", runs.observed, probability(runs.p))
         };
         if !residuals.judged {
             return format!(
@@ -140,12 +142,56 @@ impl Calibrated {
         )
     }
 
+    /// The points that a robust loss lets hardly count, as branch and index, branch by branch in the order of their places.
+    fn hardly(&self) -> Vec<(usize, Vec<usize>)> {
+        let of = |(branch, order): (usize, Vec<usize>)| {
+            let far = |i: &usize| self.fit.weights.get(*i).is_some_and(|w| *w < HARDLY);
+            order.chunk_by(|a, b| far(a) == far(b)).filter(|run| far(&run[0])).map(|run| (branch, run.to_vec())).collect::<Vec<_>>()
+        };
+        self.sorted().into_iter().enumerate().flat_map(of).collect()
+    }
+
+    /// How many points a robust loss lets hardly count, and where they are; nothing where all count.
+    pub fn hardly_counting(&self) -> Option<String> {
+        let runs = self.hardly();
+        let count: usize = runs.iter().map(|(_, run)| run.len()).sum();
+        if count == 0 {
+            return None;
+        }
+        let show = |i: usize| format_si(self.points.x[i], &self.axes[0].display, 4);
+        let one = |(branch, run): &(usize, Vec<usize>)| {
+            let name = self.points.names.get(*branch).filter(|_| self.points.names.len() > 1);
+            let name = name.map_or_else(String::new, |name| format!(" ({name})"));
+            match run[..] {
+                [only] => format!("at {}{name}", show(only)),
+                [first, .., last] => format!("{} from {} to {}{name}", run.len(), show(first), show(last)),
+                [] => String::new(),
+            }
+        };
+        let mut places: Vec<String> = runs.iter().take(MOST_PLACES).map(one).collect();
+        let others: usize = runs.iter().skip(MOST_PLACES).map(|(_, run)| run.len()).sum();
+        if others > 0 {
+            places.push(format!("{others} elsewhere"));
+        }
+        let (of, count_in_words) = (self.points.x.len(), if count == 1 { "hardly counts" } else { "hardly count" });
+        Some(format!(
+            "{count} of {of} points {count_in_words}, with a weight below {HARDLY}, as they lie far off the curve: {}.",
+            places.join(", ")
+        ))
+    }
+
     /// The result in one sentence.
     pub fn verdict(&self) -> String {
         let count = self.points.x.len();
+        let held = self.fit.parameters.iter().any(|p| p.at.is_some());
         let state = match &self.fit.stop {
             Stop::Converged if self.sound() => "The parameters explain the measured curve",
+            Stop::Converged if self.fit.residuals.unexplained && held => {
+                "The parameters do not explain the measured curve within their ranges"
+            }
             Stop::Converged if self.fit.residuals.unexplained => "The parameters do not explain the measured curve",
+            // What the curve would determine without the bound is not known.
+            Stop::Converged if held => "The measured curve would be met better beyond the range of a parameter",
             Stop::Converged if !self.determined() => "The measured curve does not determine all parameters",
             Stop::Converged => "All parameters are determined; the points are too few to judge whether they explain the curve",
             Stop::Interrupted => "Interrupted: the best parameters so far",
@@ -202,7 +248,11 @@ impl Calibrated {
         for (a, b, r) in &self.fit.identified.tied {
             let message =
                 format!("`{}` and `{}` are hardly told apart: their errors have a correlation of {r:.4}", self.name(*a), self.name(*b));
-            all.push(("W0903", message, "a prior on one of them narrows the other"));
+            all.push((
+                "W0903",
+                message,
+                "measure where they act differently, or take one of them out; their combination is known well as it is",
+            ));
         }
         for i in &self.fit.identified.on_priors {
             all.push(("W0904", format!("the estimate of `{}` rests on its prior", self.name(*i)), "measure what depends on it more"));
@@ -212,7 +262,7 @@ impl Calibrated {
                 all.push((
                     "W0906",
                     format!("`{}` lies at a bound of its range", found.parameter.name),
-                    "widen `range`, if it may lie beyond",
+                    "widen `range` if it may lie beyond; else the parameter makes up for something that the model lacks",
                 ));
             }
             // Were both right, an estimate would lie away from the mean by what the prior's variance loses in it.
@@ -231,12 +281,21 @@ impl Calibrated {
                 all.push(("W0907", message, "was the prior too sure, or does the model lack something?"));
             }
         }
+        if self.beyond > 0 {
+            let (points, lie) = if self.beyond == 1 { ("point", "lies") } else { ("points", "lie") };
+            let message = format!("{} {points} that count {lie} beyond the ends of the curve, on the bench that was found", self.beyond);
+            all.push(("W0908", message, "compute further, or leave out the ends of the record"));
+        }
         if self.fit.residuals.unexplained {
             all.push((
                 "W0905",
                 self.residual_verdict(),
                 "do not take the estimates for material data; look for what the model lacks there",
             ));
+        }
+        if self.determined() && !self.fit.residuals.judged && !self.fit.residuals.unexplained {
+            let message = format!("{TOO_FEW} whether the parameters explain the curve: {}", self.points.x.len());
+            all.push(("W0909", message, "measure at more places"));
         }
         for (code, message, help) in all {
             self.diagnostics.push(Diagnostic::warning(code, place, message).label("this calibration").help(help));
@@ -256,7 +315,7 @@ fn digits(value: f64, width: f64) -> usize {
     digits
 }
 
-/// A probability, short.
+/// What a probability is, short: `= 0.03`, `< 0.0001`.
 fn probability(p: f64) -> String {
-    if p < 1e-4 { "below 0.0001".to_owned() } else { format_number(p, 2) }
+    if p < 1e-4 { "< 0.0001".to_owned() } else { format!("= {}", format_number(p, 2)) }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
-use forcewright_contract::calibration::OfBench;
+use forcewright_contract::calibration::{OfBench, per};
 use forcewright_contract::edit::{self, EditError};
 use forcewright_contract::project::{Choices, Files};
 use forcewright_model::Axis;
@@ -37,8 +37,10 @@ impl Found<'_> {
             let text = match of.which {
                 BenchParameter::OffsetX => written(self.axes[0].display.from_si(*si), self.axes[0].display.symbol()),
                 BenchParameter::OffsetY => written(self.axes[1].display.from_si(*si), self.axes[1].display.symbol()),
-                // As a unit of its own a compliance is written without brackets.
-                BenchParameter::Compliance => written(*si, &of.unit.replace(['(', ')'], "").replace("/N*m", "/N/m")),
+                BenchParameter::Compliance => {
+                    let [x, y] = self.axes.each_ref().map(|axis| &axis.display);
+                    written(*si * y.to_si(1.0) / x.to_si(1.0), &per(x.symbol(), y.symbol()))
+                }
             };
             (keys, text)
         })

@@ -8,8 +8,11 @@ use forcewright_study::pareto::Stop;
 
 use super::{Goal, Pareto, ParetoDesign};
 
-/// Significant digits of goals.
-const DIGITS: usize = 4;
+/// Significant digits of the largest value of a goal, and decimals more, at most, that tell neighbours apart.
+const DIGITS: i32 = 4;
+const MORE: i32 = 2;
+/// Margins below this are shown as less than it.
+const LEAST_MARGIN: f64 = 1e-5;
 /// Most reasons why designs have no values that are shown.
 const MOST_REASONS: usize = 8;
 /// Identifiers of the pictures: of two goals, or of each pair of three.
@@ -18,8 +21,15 @@ const PICTURES: [&str; 3] = ["front", "front-2", "front-3"];
 const SHAPES: [&str; 3] = ["shape-1", "shape-2", "shape-3"];
 
 impl Pareto {
-    fn goal_text(goal: &Goal, si: f64) -> String {
-        format_si(si, &goal.unit, DIGITS)
+    /// A value of a goal in its unit, with as many decimals as all others of the front: equal texts are equal values, as far as possible.
+    pub(super) fn goal_text(&self, goal: &Goal, si: f64) -> String {
+        let place = self.goals.iter().position(|g| g.name == goal.name);
+        let own = |d: &ParetoDesign| place.and_then(|at| d.goals.get(at)).map(|v| goal.unit.from_si(*v)).filter(|v| v.is_finite());
+        let all: Vec<f64> = self.designs.iter().filter_map(own).collect();
+        let shown = goal.unit.from_si(si);
+        let Some(decimals) = decimals(&all).filter(|_| shown.is_finite()) else { return format_si(si, &goal.unit, 4) };
+        let (number, unit) = (format!("{:.decimals$}", shown + 0.0), goal.unit.pretty());
+        if unit.is_empty() { number } else { format!("{number} {unit}") }
     }
 
     /// The design that is best in a goal.
@@ -35,8 +45,8 @@ impl Pareto {
         for (at, goal) in self.goals.iter().enumerate().filter(|_| self.met()) {
             let Some(best) = self.best(at) else { continue };
             let others = self.goals.iter().zip(&self.designs[best].goals).enumerate().filter(|(i, _)| *i != at);
-            let others: Vec<String> = others.map(|(_, (g, v))| format!("`{}` {}", g.name, Self::goal_text(g, *v))).collect();
-            let value = Self::goal_text(goal, self.designs[best].goals[at]);
+            let others: Vec<String> = others.map(|(_, (g, v))| format!("`{}` {}", g.name, self.goal_text(g, *v))).collect();
+            let value = self.goal_text(goal, self.designs[best].goals[at]);
             let most = if goal.large { "Largest" } else { "Smallest" };
             all.push(say(most, format!("`{}` {value} with {}: design {}.", goal.name, others.join(", "), best + 1)));
         }
@@ -64,12 +74,19 @@ impl Pareto {
         let kept = if self.all_checks { "every check" } else { "every requirement" };
         let goals: Vec<String> = self.goals.iter().map(|g| format!("`{}`", g.name)).collect();
         match (self.met(), self.designs.first()) {
-            (true, _) => format!("{} designs keep {kept}, and none found is better in all of {}.", self.designs.len(), goals.join(", ")),
+            (true, _) => {
+                let (last, others) = goals.split_last().map_or((String::new(), &[][..]), |(last, others)| (last.clone(), others));
+                let goals = format!("{} and {last}", others.join(", "));
+                match self.designs.len() {
+                    1 => format!("One design keeps {kept}, and none found is better in any of {goals}."),
+                    count => format!("{count} designs keep {kept}; none found is better than one of them in {goals} at once."),
+                }
+            }
             (false, Some(nearest)) => {
                 let what = nearest
                     .tightest
                     .as_ref()
-                    .map_or_else(String::new, |(check, margin)| format!(": it misses {check} by {} %", format_number(-100.0 * margin, 3)));
+                    .map_or_else(String::new, |(check, margin)| format!(": it misses {check} by {}", margin_text(-margin)));
                 format!("No design keeps {kept}; the nearest is shown{what}.")
             }
             (false, None) => "No design could be computed.".to_owned(),
@@ -107,10 +124,10 @@ impl Pareto {
     fn cells(&self, at: usize) -> Vec<String> {
         let design = &self.designs[at];
         let mut cells = vec![(at + 1).to_string()];
-        cells.extend(self.goals.iter().zip(&design.goals).map(|(g, v)| Self::goal_text(g, *v)));
+        cells.extend(self.goals.iter().zip(&design.goals).map(|(g, v)| self.goal_text(g, *v)));
         cells.extend(design.values.iter().map(|v| visible(v).into_owned()));
         let (check, margin) = design.tightest.clone().unzip();
-        let margin = margin.filter(|m| m.is_finite()).map_or_else(|| "–".to_owned(), |m| format!("{} %", format_number(100.0 * m, 3)));
+        let margin = margin.filter(|m| m.is_finite()).map_or_else(|| "–".to_owned(), margin_text);
         cells.extend([check.unwrap_or_else(|| "–".to_owned()), margin]);
         cells
     }
@@ -135,7 +152,9 @@ impl Pareto {
     pub fn page(&self, input_name: &str, command: &str) -> String {
         let statements = self.verdict();
         let words = statements.iter().skip(1).map(|s| StudyPart::Text(format!("{}: {}", s.title, s.text)));
-        let front: Vec<StudyPart> = self.pictures().into_iter().map(|s| StudyPart::Scatter(Box::new(s))).chain(words).collect();
+        let lines = self.lines().map(|lines| StudyPart::Parallel(Box::new(lines)));
+        let clouds = self.pictures().into_iter().map(|s| StudyPart::Scatter(Box::new(s)));
+        let front: Vec<StudyPart> = clouds.chain(lines).chain(words).collect();
         let row = |at: usize| Pick { id: anchor(at), cells: self.cells(at), file: self.designs[at].file.as_ref().map(|f| f.0.clone()) };
         let files = self.designs.iter().filter(|d| d.file.is_some()).count();
         let caption = format!(
@@ -226,7 +245,58 @@ impl Pareto {
     }
 }
 
+/// Decimals with which the largest of some values has its digits, and neighbours differ if that takes few more.
+fn decimals(all: &[f64]) -> Option<usize> {
+    let largest = all.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    // Powers of ten need an exponent, not decimals.
+    let exponent = (-5..7).find(|e| largest < forcewright_base::maths::powi(10.0, e + 1)).filter(|_| largest > 1e-5)?;
+    let least = (DIGITS - 1 - exponent).max(0);
+    let mut sorted = all.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * largest);
+    let apart = |decimals: i32| {
+        let texts = |v: &f64| format!("{v:.0$}", usize::try_from(decimals).unwrap_or(0));
+        sorted.windows(2).all(|pair| texts(&pair[0]) != texts(&pair[1]))
+    };
+    let decimals = (least..=least + MORE).find(|d| apart(*d)).unwrap_or(least + MORE);
+    usize::try_from(decimals).ok()
+}
+
+/// A margin in per cent: what is kept is never shown as missed, nor the other way.
+fn margin_text(margin: f64) -> String {
+    if margin.abs() >= LEAST_MARGIN || margin.abs() <= 0.0 {
+        return format!("{} %", format_number(100.0 * margin, 3));
+    }
+    let least = format_number(100.0 * LEAST_MARGIN, 3);
+    if margin > 0.0 { format!("less than {least} %") } else { format!("missed by less than {least} %") }
+}
+
 /// The identifier of a design's row.
-fn anchor(at: usize) -> String {
+pub(super) fn anchor(at: usize) -> String {
     format!("design-{}", at + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values of a column have as many decimals each, and enough of them that neighbours differ; twins do not stretch it.
+    #[test]
+    fn columns_tell_neighbours_apart() {
+        assert_eq!(decimals(&[0.0233, 0.023_47, 0.040_72]), Some(5));
+        assert_eq!(decimals(&[2288.0, 2310.2, 4263.9]), Some(0));
+        assert_eq!(decimals(&[2288.1, 2288.3]), Some(1));
+        assert_eq!(decimals(&[8.622, 8.622 + 1e-12, 10.42]), Some(2));
+        assert_eq!(decimals(&[1.000_01, 1.000_011]), Some(5));
+        assert_eq!((decimals(&[3e9]), decimals(&[0.0])), (None, None));
+    }
+
+    /// A margin too small for its digits is not shown as none, and one that is missed not as kept.
+    #[test]
+    fn small_margins_keep_their_side() {
+        assert_eq!(margin_text(0.1737), "17.4 %");
+        assert_eq!(margin_text(0.0), "0 %");
+        assert_eq!(margin_text(3e-8), "less than 0.001 %");
+        assert_eq!(margin_text(-f64::MIN_POSITIVE), "missed by less than 0.001 %");
+    }
 }

@@ -1,7 +1,7 @@
 //! What is varied: a key of the project file and the values that it may have.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
-use forcewright_base::units::{Dimension, Quantity};
+use forcewright_base::units::{Dimension, Quantity, Unit};
 use forcewright_contract::describe::Member;
 use forcewright_contract::numbers::Number;
 use forcewright_contract::studies::Varied;
@@ -32,6 +32,10 @@ pub struct Choice {
     values: Values,
     /// What stands behind every value of a range: the tolerance of the file.
     tolerance: String,
+    /// Where its path stands.
+    pub(super) place: Span,
+    /// Where the values of [`Self::telling`] stand.
+    places: Vec<Span>,
 }
 
 #[derive(Clone, Debug)]
@@ -81,7 +85,12 @@ impl Choice {
             (None, _) | (_, Values::Whole(..) | Values::Among(_)) => String::new(),
             (Some((number, tolerance)), _) => tolerance.suffix(&number.unit, TOLERANCE_DIGITS),
         };
-        let mut choice = Self { key, dimension: None, values, tolerance };
+        let written = member.value.range.as_ref().or(member.value.among.as_ref());
+        let places = match written.map(|w| &w.value) {
+            Some(Value::List(items)) => items.iter().map(|item| item.span).collect(),
+            _ => Vec::new(),
+        };
+        let mut choice = Self { key, dimension: None, values, tolerance, place: member.name.span, places };
         choice.dimension = choice.common_dimension();
         Some(choice)
     }
@@ -138,6 +147,25 @@ impl Choice {
             Values::Whole(lower, upper) => vec![lower.to_string(), upper.to_string()],
             Values::Among(all) => all.clone(),
         }
+    }
+
+    /// What the project has, as typed.
+    pub(super) fn typed(&self, tree: &Table) -> Option<String> {
+        match value_at(tree, &self.key)? {
+            Value::Text(text) => Some(text.clone()),
+            other => typed(other),
+        }
+    }
+
+    /// The unit of its values, if they are numbers.
+    pub(super) fn unit(&self) -> Option<Unit> {
+        let first = self.telling().into_iter().next()?;
+        Quantity::parse(plain(&first), self.dimension?).ok().map(|q| q.unit)
+    }
+
+    /// Where the value of this index of [`Self::telling`] stands.
+    pub(super) fn place_of(&self, index: usize) -> Span {
+        self.places.get(index).copied().unwrap_or(self.place)
     }
 
     /// Where the value of the project stands among them, if it is one of them.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use forcewright_base::units::Unit;
 use forcewright_model::{Axis, CheckState, Figure};
 
 use crate::escape::{each, escape, path, prose};
@@ -65,6 +66,8 @@ pub enum StudyPart {
     Figure(Box<Figure>),
     /// Points to choose from.
     Scatter(Box<Scatter>),
+    /// Lines to choose from.
+    Parallel(Box<Parallel>),
     /// Rows that points lead to.
     Picks(Picks),
 }
@@ -99,6 +102,67 @@ pub struct ScatterPoint {
     pub leads_to: String,
     /// Whether it has a ring.
     pub outstanding: bool,
+}
+
+/// Designs as lines over parallel axes, each of which may lead to its row in [`Picks`].
+#[derive(Clone, Debug)]
+pub struct Parallel {
+    /// Stable identifier.
+    pub id: &'static str,
+    /// What it shows.
+    pub title: String,
+    /// How it is read.
+    pub caption: String,
+    /// The axes, from left to right.
+    pub axes: Vec<ParallelAxis>,
+    /// The lines.
+    pub lines: Vec<ParallelLine>,
+    /// What lines of each rank are, in their order.
+    pub names: [String; 3],
+}
+
+/// One axis of several.
+#[derive(Clone, Debug)]
+pub struct ParallelAxis {
+    /// What it is; a path may be broken at its dots.
+    pub name: String,
+    /// What is wanted of it: `maximise`; empty for what is varied.
+    pub sense: String,
+    /// What its values are.
+    pub scale: ParallelScale,
+}
+
+/// Values of an axis.
+#[derive(Clone, Debug)]
+pub enum ParallelScale {
+    /// Numbers, shown in a unit.
+    Number(Unit),
+    /// One of some words; values are their places.
+    Words(Vec<String>),
+}
+
+/// A line over parallel axes.
+#[derive(Clone, Debug)]
+pub struct ParallelLine {
+    /// A value per axis, SI or the place of a word; a line is interrupted where there is none.
+    pub values: Vec<Option<f64>>,
+    /// What it is.
+    pub label: String,
+    /// Identifier of its row, if it has one.
+    pub leads_to: Option<String>,
+    /// How it is drawn.
+    pub rank: ParallelRank,
+}
+
+/// How much a line stands out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParallelRank {
+    /// Thin and grey.
+    Others,
+    /// In the colour of results.
+    Picked,
+    /// Thick and dashed, with points: what everything is compared with.
+    Present,
 }
 
 /// A table whose rows can be led to.
@@ -215,17 +279,27 @@ fn content(part: &StudyPart, figures: &mut usize) -> String {
         StudyPart::Scatter(own) if own.points.is_empty() => String::new(),
         StudyPart::Scatter(own) => {
             *figures += 1;
-            format!(
-                "<figure id=\"figure-{}\" class=\"plot\">\n{}<figcaption><strong>Figure {figures}. {}.</strong> {}</figcaption>\n</figure>\n",
-                escape(own.id),
-                svg::scatter::draw(own, svg::PlotSize::default()).svg,
-                escape(own.title.trim_end_matches('.')),
-                prose(&own.caption)
-            )
+            chosen_from(*figures, own.id, &svg::scatter::draw(own, svg::PlotSize::default()), [&own.title, &own.caption])
+        }
+        StudyPart::Parallel(own) if own.axes.is_empty() || own.lines.is_empty() => String::new(),
+        StudyPart::Parallel(own) => {
+            *figures += 1;
+            chosen_from(*figures, own.id, &svg::parallel::draw(own, svg::PlotSize::default()), [&own.title, &own.caption])
         }
         StudyPart::Picks(own) if own.rows.is_empty() => String::new(),
         StudyPart::Picks(own) => picks(own),
     }
+}
+
+/// A picture of links.
+fn chosen_from(number: usize, id: &str, drawing: &svg::Drawing, [title, caption]: [&str; 2]) -> String {
+    format!(
+        "<figure id=\"figure-{}\" class=\"plot\">\n{}<figcaption><strong>Figure {number}. {}.</strong> {}</figcaption>\n</figure>\n",
+        escape(id),
+        drawing.svg,
+        escape(title.trim_end_matches('.')),
+        prose(caption)
+    )
 }
 
 /// Rows with identifiers, so that the style can mark the one that is led to.
@@ -317,6 +391,49 @@ mod tests {
         assert!(
             !html.contains("<script") && html.contains("&lt;script&gt;") && html.contains("id=\"full\"") && !html.contains("id=\"empty\"")
         );
+    }
+
+    /// Lines over axes lead to rows; every axis has its name and its unit, words are words, the design of the file is none of the links.
+    #[test]
+    fn lines_lead_to_their_rows() {
+        use forcewright_base::units::Unit;
+        let number = |name: &str, unit: &str| ParallelAxis {
+            name: name.to_owned(),
+            sense: "minimise".to_owned(),
+            scale: ParallelScale::Number(Unit::parse(unit).unwrap()),
+        };
+        let words = ParallelScale::Words(vec!["thin <1>".to_owned(), "thick".to_owned()]);
+        let cable = ParallelAxis { name: "design.cables.1.use".to_owned(), sense: String::new(), scale: words };
+        let line = |i: u32, rank| ParallelLine {
+            values: vec![Some(f64::from(i % 2)), (i != 2).then(|| 1e-3 * f64::from(i)), Some(10.0 + f64::from(i))],
+            label: format!("Design {i}"),
+            leads_to: (rank != ParallelRank::Present).then(|| format!("design-{i}")),
+            rank,
+        };
+        let own = Parallel {
+            id: "lines",
+            title: "Lines".to_owned(),
+            caption: "Caption.".to_owned(),
+            axes: vec![cable, number("design.input_diameter", "mm"), number("force", "N")],
+            lines: vec![line(1, ParallelRank::Others), line(2, ParallelRank::Picked), line(3, ParallelRank::Present)],
+            names: ["others".to_owned(), "picked".to_owned(), "of the file".to_owned()],
+        };
+        let mut figures = 0;
+        let html = content(&StudyPart::Parallel(Box::new(own.clone())), &mut figures);
+        assert!(figures == 1 && html.matches("<a class=\"pick\"").count() == 2 && html.contains("href=\"#design-2\""), "{html}");
+        for shown in ["thin &lt;1&gt;", "mm, minimise", "N, minimise", "of the file", "input_", "3 lines over 3 axes", "2.5", "12.5"] {
+            assert!(html.contains(shown), "{shown}: {html}");
+        }
+        // Texts lie inside the drawing and not upon each other.
+        let drawing = svg::parallel::draw(&own, svg::PlotSize::default());
+        for (i, a) in drawing.texts.iter().enumerate() {
+            assert!(a.rect.x0 >= 0.0 && a.rect.x1 <= drawing.width && a.rect.y1 <= drawing.height, "{}", a.text);
+            for b in &drawing.texts[i + 1..] {
+                assert!(!a.rect.overlaps(&b.rect), "{} {}", a.text, b.text);
+            }
+        }
+        let nothing = Parallel { lines: Vec::new(), ..own };
+        assert!(content(&StudyPart::Parallel(Box::new(nothing)), &mut figures).is_empty());
     }
 
     /// Points lead to rows, and rows to files, by addresses that nothing typed can break out of; the style marks the row.

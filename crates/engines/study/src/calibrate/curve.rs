@@ -32,7 +32,8 @@ pub enum BenchParameter {
 }
 
 impl Bench {
-    fn set(&mut self, which: BenchParameter, value: f64) {
+    /// Sets one of its numbers, SI.
+    pub fn set(&mut self, which: BenchParameter, value: f64) {
         match which {
             BenchParameter::OffsetX => self.offset[0] = value,
             BenchParameter::OffsetY => self.offset[1] = value,
@@ -106,7 +107,15 @@ impl Model for Curve<'_> {
         let mut bench = self.bench;
         self.free.iter().zip(&x[inner..]).for_each(|(which, value)| bench.set(*which, *value));
         let mut own = Evaluation::default();
-        self.evaluator.evaluate(&x[..inner], derivatives, &mut own, room)?;
+        self.evaluator.evaluate(&x[..inner], false, &mut own, room)?;
+        if derivatives {
+            // Of the curves that are compared, and of nothing else that the evaluator computes.
+            let mut rows = vec![false; own.values.len()];
+            for index in self.branches.iter().flat_map(|(stations, _)| &stations.index) {
+                rows[*index] = true;
+            }
+            self.evaluator.differentiate(&x[..inner], &rows, &mut own, room)?;
+        }
         out.values.clear();
         out.jacobian.clear();
         for (stations, branch) in &self.branches {

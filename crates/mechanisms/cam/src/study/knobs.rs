@@ -107,10 +107,10 @@ impl Knobs {
         self.cuts
     }
 
-    /// Steps of central differences, SI: none for a seed, of which no value follows smoothly.
-    pub(super) fn steps(&self) -> Vec<f64> {
-        let step = |v: &Variable| 1e-5 * v.nominal.abs().max(1e-3 * v.scale().min(1.0));
-        self.each.iter().zip(&self.variables).map(|(knob, v)| if matches!(knob, Knob::RandomSeed) { 0.0 } else { step(v) }).collect()
+    /// Takes away the steps of differences by a seed, which no value follows smoothly.
+    pub(super) fn without_seed(&self, steps: &mut [f64]) {
+        let seeds = self.each.iter().zip(steps).filter(|(knob, _)| matches!(knob, Knob::RandomSeed));
+        seeds.for_each(|(_, step)| *step = 0.0);
     }
 
     /// Changes a copy of the design.

@@ -1,6 +1,7 @@
 //! A design for studies that look at many: forces both ways over the window, and what follows from the whole stroke.
 
 use forcewright_base::units::Dimension;
+use forcewright_study::differences::{self, Steps};
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
 
 use super::knobs::Knobs;
@@ -16,6 +17,9 @@ use crate::path::SidePath;
 pub(crate) const PANELS: usize = 40;
 /// Stations over the window.
 pub(crate) const STATIONS: usize = 2 * PANELS + 1;
+
+/// Step of a difference, over values that are right to rounding and some digits more.
+pub(crate) const STEP: f64 = 1e-5;
 
 /// The metric of the motion that is compared with a slower one.
 const SLOWER: &str = "peak_force_ratio_to";
@@ -51,6 +55,7 @@ pub(super) struct Many {
     held: Vec<usize>,
     outputs: Vec<Output>,
     measures: Vec<Measure>,
+    steps: Steps,
 }
 
 struct Room {
@@ -78,7 +83,7 @@ impl Many {
         let base = Design { motion, ..design.clone() };
         let lengths = [design.built.min_length_m, design.built.max_length_m];
         let measures = measures(OF_FORCES.iter().chain(&scalars), design.requirements.as_ref(), lengths, design.moves());
-        Self { knobs, base, paths, window_m, wanted, scalars, held, outputs, measures }
+        Self { knobs, base, paths, window_m, wanted, scalars, held, outputs, measures, steps: Steps::new(STEP) }
     }
 
     /// Travels at which forces are computed, m.
@@ -240,9 +245,14 @@ impl Evaluator for Many {
         let of_forces = of_forces(&out.values, None, self.window_m);
         out.values.extend(self.held.iter().map(|i| of_forces[*i]));
         out.jacobian.clear();
-        if derivatives {
-            forcewright_study::differences::jacobian_with_steps(self, x, &self.knobs.steps(), out, workspace)?;
-        }
+        if derivatives { self.differentiate(x, &vec![true; out.values.len()], out, workspace) } else { Ok(()) }
+    }
+
+    fn differentiate(&self, x: &[f64], rows: &[bool], out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure> {
+        let mut steps = self.steps.at(self, x, workspace);
+        self.knobs.without_seed(&mut steps);
+        differences::jacobian_with_steps(self, x, &steps, out, workspace)?;
+        differences::keep(rows, self.knobs.variables.len(), &mut out.jacobian);
         Ok(())
     }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_contract::studies::{Free, Purpose};
+use forcewright_study::differences::{self, Steps};
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
 use forcewright_study::task::Task;
 
@@ -18,7 +19,7 @@ use crate::law::ForceLaw;
 use crate::spec::Spec;
 use crate::springs::{Bank, Spring, SpringLaw};
 use crate::study::knobs::set_rate;
-use crate::study::many::{PANELS, STATIONS, held, limited, measures, of_forces, outputs_of, scalars};
+use crate::study::many::{PANELS, STATIONS, STEP, held, limited, measures, of_forces, outputs_of, scalars};
 use crate::study::task as search;
 
 /// Metrics that follow from the torques over the window, in the order in which those of forces do.
@@ -96,6 +97,7 @@ struct Many {
     outputs: Vec<Output>,
     measures: Vec<Measure>,
     file: FromFile,
+    steps: Steps,
 }
 
 struct Room {
@@ -213,6 +215,7 @@ impl Many {
             outputs,
             base: design.clone(),
             file: FromFile::of(spec, search),
+            steps: Steps::new(STEP),
         })
     }
 
@@ -326,10 +329,12 @@ impl Evaluator for Many {
         let of_torques = of_forces(&out.values, None, self.window_rad);
         out.values.extend(self.held.iter().map(|i| of_torques[*i]));
         out.jacobian.clear();
-        if derivatives {
-            let steps: Vec<f64> = self.variables.iter().map(|v| 1e-5 * v.nominal.abs().max(1e-3 * v.scale().min(1.0))).collect();
-            forcewright_study::differences::jacobian_with_steps(self, x, &steps, out, workspace)?;
-        }
+        if derivatives { self.differentiate(x, &vec![true; out.values.len()], out, workspace) } else { Ok(()) }
+    }
+
+    fn differentiate(&self, x: &[f64], rows: &[bool], out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure> {
+        self.steps.jacobian(self, x, out, workspace)?;
+        differences::keep(rows, self.variables.len(), &mut out.jacobian);
         Ok(())
     }
 

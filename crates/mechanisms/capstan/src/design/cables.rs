@@ -145,9 +145,10 @@ fn fill(typed: &mut spec::Cable, name: &Located<String>, diagnostics: &mut Diagn
     let (construction, diameter) = name_and_diameter(&name.value);
     let Some(entry) = cables::find(construction) else {
         let names: Vec<&str> = cables::catalogue().iter().map(|c| c.name.as_str()).collect();
-        let near = closest(construction, names.iter().copied());
+        let aliases = cables::catalogue().iter().flat_map(|c| c.aliases.iter().map(String::as_str));
+        let near = closest(construction, names.iter().copied().chain(aliases));
         let listed = format!("the catalogue has {}", names.join(", "));
-        let error = Diagnostic::error("E0703", name.span, "no such cable in the catalogue").label("not known");
+        let error = Diagnostic::error("E0703", name.span, "no such cable in the catalogue").label("not known").unknown_word();
         diagnostics.push(error.help(near.map_or_else(|| listed.clone(), |n| format!("did you mean \"{n}\"? {listed}"))));
         return None;
     };

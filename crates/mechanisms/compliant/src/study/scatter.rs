@@ -3,6 +3,7 @@
 use forcewright_base::units::Dimension;
 use forcewright_beam::{BatchSolver, CurveSolver, DesignError, Network, Response, Settings, Shape, Status, Variant};
 use forcewright_contract::metrics::Limit;
+use forcewright_study::differences::{self, Steps};
 use forcewright_study::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace, one_by_one};
 
 use super::knobs::{Knob, Knobs};
@@ -17,6 +18,8 @@ const STATIONS: usize = 41;
 const ACCURACY: f64 = 1e-5;
 /// The same where many designs are solved side by side: the finest with which that is possible.
 const TOGETHER: f64 = 3e-5;
+/// Steps of differences, for what has no derivatives of its own: the third root of the accuracy.
+const STEP: f64 = 2e-2;
 /// Difference of a beam from the one that spans its nodes with the same bends, relative to its length, up to which they are the same.
 const SPANNED: f64 = 1e-9;
 
@@ -49,6 +52,7 @@ pub(crate) struct Scatter {
     requirements: Option<Requirements>,
     outputs: Vec<Output>,
     measures: Vec<Measure>,
+    steps: Steps,
 }
 
 struct Room {
@@ -80,6 +84,7 @@ impl Scatter {
             requirements: design.requirements.clone(),
             outputs: vec![output("force", "N", 0), output("stiffness", "N/m", 1), output("stress", "Pa", 2)],
             measures: measures(design),
+            steps: Steps::new(STEP),
             knobs,
         }
     }
@@ -95,6 +100,24 @@ impl Scatter {
         out.values.extend(&response.stress_pa);
         out.jacobian.clear();
         Ok(())
+    }
+
+    /// Derivatives of the forces by the numbers: a row per station. Not a number where the engine has none.
+    fn forces_by_numbers(&self, x: &[f64], workspace: &mut Workspace) -> Result<Vec<f64>, Failure> {
+        let failure = |reason: &str| Failure { reason: reason.to_owned() };
+        let room = workspace.get::<Room>().ok_or_else(|| failure("the room is another evaluator's"))?;
+        self.knobs.apply(&self.base, x, &mut room.network).ok_or_else(|| failure(UNSPANNED))?;
+        let parameters = &self.knobs.parameters;
+        let solved = room.solver.solve_with_gradient(&room.network, &self.stations_m, &self.settings, parameters);
+        let response = solved.map_err(|error| Failure { reason: error.to_string() })?;
+        if !matches!(response.status, Status::Complete) {
+            return Err(Failure { reason: response.status.to_string() });
+        }
+        let columns = self.knobs.variables.len();
+        let mut all = vec![0.0; STATIONS * columns];
+        let each = response.force_gradient.chunks_exact(parameters.len().max(1)).zip(all.chunks_exact_mut(columns.max(1)));
+        each.for_each(|(by_parameters, row)| self.knobs.add_row(by_parameters, self.copies, row));
+        Ok(all)
     }
 
     /// Deviation and usable travel, and the metrics of [`MEASURED`] but the stress.
@@ -244,9 +267,24 @@ impl Evaluator for Scatter {
         let response =
             room.solver.solve(&room.network, &self.stations_m, &self.settings).map_err(|error| Failure { reason: error.to_string() })?;
         self.take(response, out)?;
-        if derivatives {
-            forcewright_study::differences::jacobian(self, x, out, workspace)?;
+        if derivatives { self.differentiate(x, &vec![true; out.values.len()], out, workspace) } else { Ok(()) }
+    }
+
+    /// Of forces as the engine has them, exact; of stiffnesses and stresses, and where the engine has none, by differences.
+    fn differentiate(&self, x: &[f64], rows: &[bool], out: &mut Evaluation, workspace: &mut Workspace) -> Result<(), Failure> {
+        let columns = self.knobs.variables.len();
+        let forces = self.forces_by_numbers(x, workspace)?;
+        let exact = forces.iter().all(|d| d.is_finite());
+        if exact && !rows.iter().skip(STATIONS).any(|wanted| *wanted) {
+            out.jacobian.clear();
+            out.jacobian.resize(rows.len() * columns, 0.0);
+        } else {
+            self.steps.jacobian(self, x, out, workspace)?;
         }
+        if exact {
+            out.jacobian[..forces.len()].copy_from_slice(&forces);
+        }
+        differences::keep(rows, columns, &mut out.jacobian);
         Ok(())
     }
 

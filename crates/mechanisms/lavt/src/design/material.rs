@@ -62,7 +62,7 @@ pub(super) fn wire_of(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         named = grade(bare);
         let Some(found) = named else {
             let all: Vec<String> = wire().grades.iter().map(|g| format!("\"EN 10270-1 {}\"", g.name)).collect();
-            let error = Diagnostic::error("E0806", name.span, format!("no such grade of spring wire: \"{}\"", name.value));
+            let error = Diagnostic::error("E0806", name.span, format!("no such grade of spring wire: \"{}\"", name.value)).unknown_word();
             diagnostics
                 .push(error.label("not known").help(format!("grades are {}; or leave `use` out and give the values", all.join(", "))));
             return None;

@@ -6,6 +6,7 @@ mod canvas;
 mod colour;
 pub(crate) mod film;
 mod legend;
+pub(crate) mod parallel;
 mod part;
 mod place;
 mod plot;
