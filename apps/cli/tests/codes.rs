@@ -111,6 +111,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0920", "the section of a study: tests of the library"),
     ("E0921", "the section of a study: tests of the library"),
     ("E0922", "the section of a study: tests of the library"),
+    ("E0923", "the section of a study: tests of the library"),
     ("E0530", "what a synthesis needs: tests of the library"),
     ("E0531", "what a synthesis needs: tests of the library"),
     ("E0532", "what a synthesis needs: tests of the library"),

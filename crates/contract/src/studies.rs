@@ -63,9 +63,13 @@ pub struct Optimise {
     pub objective: Section<Objective>,
     /// The numbers that may change, by their paths or patterns of paths.
     pub variables: Vec<Member<Freedom>>,
+    /// How designs are searched for.
+    pub search: Slot<&'static str>,
     /// Number of starts.
     pub starts: Slot<u32>,
-    /// Seed of the starts after the first.
+    /// Designs that a search of the whole range computes at most.
+    pub evaluations: Slot<u32>,
+    /// Seed of the starts after the first, or of the search of the whole range.
     pub seed: Slot<u32>,
     /// How far inside its limits the design is kept.
     pub margin: Slot<Quantity>,
@@ -151,6 +155,15 @@ pub const KEPT: &[Word] = &[
     Word { word: "required", doc: "the requirements of the file" },
 ];
 
+/// How designs are searched for.
+pub const SEARCHES: &[Word] = &[
+    Word { word: "gradient", doc: "downhill from each start, by exact derivatives" },
+    Word {
+        word: "global",
+        doc: "the whole range without derivatives (CMA-ES with restarts), then downhill from the best places; for rough landscapes with many basins",
+    },
+];
+
 /// What a design is kept against.
 pub const ROBUST: &[Word] = &[
     Word { word: "no", doc: "the design as it is meant" },
@@ -169,6 +182,10 @@ pub enum Purpose {
 
 /// Most starts and most samples.
 const MOST_STARTS: f64 = 1e5;
+/// Fewest and most designs of a search of the whole range, and the number of them without a word.
+const EVALUATIONS: [f64; 2] = [100.0, 1e8];
+/// See [`EVALUATIONS`].
+pub const USUAL_EVALUATIONS: u32 = 10_000;
 const MOST_SAMPLES: f64 = 1e8;
 /// Most goals, and largest populations and most generations of a trade-off.
 const MOST_GOALS: usize = 3;
@@ -250,13 +267,20 @@ impl Describe for Optimise {
             Form::Table,
             &mut self.variables,
         );
+        v.choice(&Param::new("search", "How designs are searched for.").default("gradient"), SEARCHES, &mut self.search);
         v.count(
-            &Param::new("starts", "Searches: the first from the file, the others spread over the ranges.")
+            &Param::new("starts", "With `search = \"gradient\"`: searches, the first from the file, the others spread over the ranges.")
                 .within(1.0, MOST_STARTS)
                 .default("1"),
             &mut self.starts,
         );
-        v.count(&Param::new("seed", "Seed of the starts after the first.").default("1"), &mut self.seed);
+        v.count(
+            &Param::new("evaluations", "With `search = \"global\"`: designs that are computed at most before the searches downhill.")
+                .within(EVALUATIONS[0], EVALUATIONS[1])
+                .default("10000"),
+            &mut self.evaluations,
+        );
+        v.count(&Param::new("seed", "Seed of the starts after the first, or of the global search.").default("1"), &mut self.seed);
         v.quantity(
             &Param::new("margin", "How far inside its limits the design is kept, relative to each limit.").within(0.0, 0.5).default("0"),
             &mut self.margin,
@@ -351,6 +375,11 @@ pub struct Free {
 const SEARCHED: &[&str] = &["design", "motor"];
 
 impl Optimise {
+    /// Whether the whole range is searched.
+    pub fn global(&self) -> bool {
+        self.search.as_ref().is_some_and(|s| s.value == "global")
+    }
+
     /// The numbers that may change, each once, in the order of the design. Only the design may change, and the motor that is chosen for it:
     /// what is required, what it is made of and what happens to it stays.
     pub fn free(&self, numbers: &[Number], diagnostics: &mut Diagnostics) -> Vec<Free> {

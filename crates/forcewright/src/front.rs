@@ -40,7 +40,7 @@ pub struct FrontProgress {
     pub point: usize,
     /// 0 on the way forwards, 1 on the way back, 2 where designs of other points are tried as they are.
     pub pass: usize,
-    /// Starts of this search.
+    /// Starts of this search; 0 where it is as many as a search of the whole range leads to.
     pub starts: usize,
     /// Where it stands.
     pub search: Progress,
@@ -263,6 +263,7 @@ impl FrontTask<'_> {
         (starts, seed): (Option<u32>, Option<u32>),
         watch: &(dyn Fn(&FrontProgress) -> bool + Sync),
     ) -> Result<Front, Refused> {
+        self.project.starts_allowed(starts)?;
         let mut run = Run { task: self, files, folder, asked: (starts, seed), watch, points: Vec::new(), interrupted: false };
         run.forwards()?;
         run.backwards()?;
@@ -383,7 +384,8 @@ impl Run<'_> {
             return Ok(());
         }
         let starts = more.iter().map(|m| m.1.clone()).collect();
-        let found = self.search((point, pass), Beginnings { starts: Some(0), seed: self.asked.1, more: starts, as_they_are: false })?;
+        let found =
+            self.search((point, pass), Beginnings { starts: Some(0), seed: self.asked.1, more: starts, local: true, as_they_are: false })?;
         let own = &mut self.points[point];
         count(own, Some(&found));
         if Standing::of(&found, metric).beats(Standing::of(&own.found, metric)) {
@@ -409,7 +411,7 @@ impl Run<'_> {
                 if self.interrupted || self.points[point].found.robustness.is_some() || !worth {
                     break;
                 }
-                let from = Beginnings { starts: Some(0), seed: self.asked.1, more: vec![x], as_they_are: true };
+                let from = Beginnings { starts: Some(0), seed: self.asked.1, more: vec![x], local: true, as_they_are: true };
                 let found = self.search((point, 2), from)?;
                 let kept = found.met() && found.best.as_ref().is_some_and(|b| b.feasible(TRIFLE));
                 self.points[point].evaluations += evaluations(&found);
@@ -443,7 +445,7 @@ fn origin(found: &Optimised, more: &[(usize, Vec<f64>)]) -> Option<Origin> {
 }
 
 fn evaluations(found: &Optimised) -> u64 {
-    found.search.runs.iter().map(|r| r.evaluations).sum()
+    found.search.evaluations()
 }
 
 /// Adds what a search did to a point: another one, or that of its own design.

@@ -77,6 +77,7 @@ pub fn explanations() -> impl Iterator<Item = &'static Explanation> {
     let studies = forcewright_contract::scatter::CODES
         .iter()
         .chain(optimise::sizes::CODES)
+        .chain(optimise::global::CODES)
         .chain(tolerance::CODES)
         .chain(calibrations)
         .chain(calibrate::CODES)

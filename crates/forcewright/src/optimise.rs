@@ -1,6 +1,7 @@
 //! From `[optimise]` to a better project file.
 
 pub(crate) mod document;
+pub(crate) mod global;
 mod pages;
 mod robust;
 pub(crate) mod sizes;
@@ -70,6 +71,8 @@ pub struct Optimised {
     pub variables: Vec<Variable>,
     /// The unit in which people are shown each of them.
     pub units: Vec<Unit>,
+    /// Seed of the starts, or of the search of the whole range.
+    pub seed: u64,
     /// All runs.
     pub search: Search,
     /// The best run, if any start could be analysed; the last step of it may have been repeated with a margin.
@@ -104,6 +107,8 @@ pub(crate) struct Beginnings {
     pub(crate) seed: Option<u32>,
     /// Starts beside those, as [`Settings::more_starts`].
     pub(crate) more: Vec<Vec<f64>>,
+    /// Whether only designs near to those are searched for, though the file asks for the whole range.
+    pub(crate) local: bool,
     /// Whether they are judged as they are, without a step.
     pub(crate) as_they_are: bool,
 }
@@ -207,6 +212,7 @@ impl Loaded {
             );
             return Err(self.refused(diagnostics));
         }
+        global::check(section, &mut diagnostics);
         let free = section.free(self.understood.numbers(), &mut diagnostics);
         let task = if diagnostics.has_errors() { None } else { self.understood.task(&free, Purpose::Search, &mut diagnostics) };
         match task.filter(|_| !diagnostics.has_errors()) {
@@ -215,9 +221,10 @@ impl Loaded {
         }
     }
 
-    /// The number of searches that `[optimise]` asks for.
+    /// The number of searches that `[optimise]` asks for; 0 where it is as many as a search of the whole range leads to.
     pub fn starts(&self) -> u32 {
-        self.understood.studies().optimise.starts.as_ref().map_or(1, |s| s.value)
+        let section = &self.understood.studies().optimise;
+        if section.global() { 0 } else { section.starts.as_ref().map_or(1, |s| s.value) }
     }
 
     /// The values of the search's goal in words, in the units of a result where one is given.
@@ -262,6 +269,7 @@ impl Loaded {
         (starts, seed): (Option<u32>, Option<u32>),
         watch: &(dyn Fn(&Progress) -> bool + Sync),
     ) -> Result<Optimised, Refused> {
+        self.starts_allowed(starts)?;
         self.optimise_from(files, target, Beginnings { starts, seed, ..Beginnings::default() }, watch)
     }
 
@@ -277,6 +285,7 @@ impl Loaded {
         let section = &self.understood.studies().optimise;
         let mut settings = Settings {
             starts: from.starts.unwrap_or(self.starts()) as usize,
+            global: if from.local || from.as_they_are { None } else { global::asked(section) },
             more_starts: from.more,
             seed: u64::from(from.seed.unwrap_or(section.seed.as_ref().map_or(1, |s| s.value))),
             reserve: Reserve { margin: section.margin.as_ref().map_or(0.0, |m| m.value.si), ..Reserve::default() },
@@ -332,6 +341,7 @@ impl Loaded {
             goal_before: task.goal_at(&nominal),
             wording,
             variables,
+            seed: settings.seed,
             search: found,
             best,
             tightened: if robustness.is_some() { Vec::new() } else { tightened(&task, &reserve) },

@@ -425,7 +425,7 @@ impl Work<'_> {
             let Ok(loaded) = self.loaded(&design.text) else { continue };
             let files = self.task.known.with(&self.task.path, &design.text);
             let watch = |_: &forcewright_study::optimise::Progress| (self.go_on)(progress);
-            let from = Beginnings { starts: Some(1), ..Beginnings::default() };
+            let from = Beginnings { starts: Some(1), local: true, ..Beginnings::default() };
             let Ok(found) = loaded.optimise_from(&files, &self.task.path, from, &watch) else { continue };
             let (Some(text), Some(report)) = (found.text, found.after) else { continue };
             let sound = !matches!(self.task.synthesiser.judge(&design.proposal, &report.outcome), Judgement::Reject(_));

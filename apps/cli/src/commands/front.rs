@@ -39,7 +39,8 @@ pub(crate) fn run(matches: &ArgMatches, front: &str) -> u8 {
     let options = (matches.get_one::<u32>("starts").copied(), matches.get_one::<u32>("seed").copied());
     let starts = options.0.unwrap_or(loaded.starts());
     let variables = task.evaluator.variables().len();
-    let text = format!("searching: {}; points: {}, variables: {variables}, starts of each: {starts}", task.title, points.len());
+    let how = if starts > 0 { format!("starts of each: {starts}") } else { "the whole range for each".to_owned() };
+    let text = format!("searching: {}; points: {}, variables: {variables}, {how}", task.title, points.len());
     output::narrate(&format!("{}\n", visible(&text)));
     let watch = Watch::new(&stop, starts, task.steps.len(), loaded.wording(&task, None));
     let values = points.values();

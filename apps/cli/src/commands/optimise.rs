@@ -51,7 +51,8 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let options = (matches.get_one::<u32>("starts").copied(), matches.get_one::<u32>("seed").copied());
     let starts = options.0.unwrap_or(loaded.starts());
     let variables = task.evaluator.variables().len();
-    output::narrate(&format!("searching: {}; variables: {variables}, starts: {starts}\n", task.title));
+    let how = if starts > 0 { format!("starts: {starts}") } else { "the whole range".to_owned() };
+    output::narrate(&format!("searching: {}; variables: {variables}, {how}\n", task.title));
     let target = folder.join(new_name(file));
     let watch = Watch::new(&stop, starts, task.steps.len(), loaded.wording(&task, None));
     let found = loaded.optimise(&DiskFiles, &target, options, &|progress| watch.see(progress));
@@ -119,7 +120,7 @@ fn summary(found: &Optimised) -> String {
     for statement in found.verdict() {
         let _ = writeln!(out, "{}: {}", statement.title, statement.text);
     }
-    for table in [Some(found.variable_table()), found.active_table(), found.basin_table()].into_iter().flatten() {
+    for table in [Some(found.variable_table()), found.active_table(), found.place_table(), found.basin_table()].into_iter().flatten() {
         let _ = write!(out, "\n{}\n", text_table(&table));
     }
     out
@@ -208,7 +209,13 @@ impl<'a> Watch<'a> {
             }
             Some([goal, _]) => format!("{} so far, all limits kept", self.wording.show(goal)),
         };
-        format!("start {} of {}{step}, iteration {}: {best}", progress.start + 1, starts, progress.iteration)
+        if let Some(global) = progress.global {
+            let (run, generation) = (global.run + 1, progress.iteration + 1);
+            return format!("whole range, run {run}, generation {generation}, {} designs: {best}", global.evaluations);
+        }
+        // Of a search of the whole range nobody knows before how many places it leads to.
+        let of = if starts > 0 { format!(" of {starts}") } else { String::new() };
+        format!("start {}{of}{step}, iteration {}: {best}", progress.start + 1, progress.iteration)
     }
 
     /// Takes the line away.

@@ -24,7 +24,8 @@ pub use loss::{Loss, mad};
 pub use residuals::{Against, LackOfFit, Residuals, Runs, Stretch};
 pub use search::Stop;
 
-use linear::{Singular, Triangle};
+pub(crate) use linear::Singular;
+use linear::Triangle;
 use search::{Found, MOST_ROUNDS, Place, Problem};
 
 use crate::evaluator::{Evaluation, Failure, Workspace};

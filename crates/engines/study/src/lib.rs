@@ -1,6 +1,7 @@
 //! Studies of designs: they see numbers in and numbers out, never a mechanism.
 
 pub mod calibrate;
+pub mod cma;
 pub mod differences;
 pub mod evaluator;
 pub mod nlp;

@@ -1,4 +1,8 @@
-//! Searching for better designs: one or many starts, the basins that they lead to, and what limits the best.
+//! Searching for better designs: one or many starts, or the whole range, the basins that they lead to, and what limits the best.
+
+mod global;
+
+pub use global::{Explored, Generation, Global, Place};
 
 use rayon::prelude::*;
 
@@ -30,9 +34,12 @@ pub struct Settings {
     /// Number of starts: the first from the design, the others spread over the ranges by a scrambled Sobol sequence. With
     /// [`Self::more_starts`] it may be 0.
     pub starts: usize,
+    /// In place of starts spread over the ranges: a search of the whole range, from whose best designs searches go on. The first start is
+    /// the design still.
+    pub global: Option<Global>,
     /// Starts beside those, SI, each one value per variable; a value beyond its range starts at its end.
     pub more_starts: Vec<Vec<f64>>,
-    /// Seed of the starts after the first.
+    /// Seed of the starts after the first, and of the search of the whole range.
     pub seed: u64,
     /// How far inside its limits the design is kept.
     pub reserve: Reserve,
@@ -44,7 +51,7 @@ impl Default for Settings {
     fn default() -> Self {
         // A design is made to four digits.
         let nlp = nlp::Settings { tolerance: 1e-5, feasibility: 1e-5, iteration_limit: 200, least_gain: 1e-4, ..nlp::Settings::default() };
-        Self { starts: 1, more_starts: Vec::new(), seed: 1, reserve: Reserve::default(), nlp }
+        Self { starts: 1, global: None, more_starts: Vec::new(), seed: 1, reserve: Reserve::default(), nlp }
     }
 }
 
@@ -104,6 +111,8 @@ pub struct Progress {
     pub goal: f64,
     /// The largest violation there, relative to the scale of its limit.
     pub violation: f64,
+    /// Of a search of the whole range, which has no start, and whose iterations are generations.
+    pub global: Option<Generation>,
 }
 
 /// A limit or range that holds the optimum back.
@@ -169,7 +178,10 @@ pub struct Basin {
 /// What a search found.
 #[derive(Clone, Debug)]
 pub struct Search {
-    /// All runs, in the order of their starts; without those that had not begun when it was interrupted.
+    /// What the search of the whole range did, if one was asked for.
+    pub explored: Option<Explored>,
+    /// All runs, in the order of their starts: the design, the places of the search of the whole range, those given; without those that had
+    /// not begun when it was interrupted.
     pub runs: Vec<Run>,
     /// The best: the feasible one of the least goal, or the one of the least violation.
     pub best: Option<usize>,
@@ -179,8 +191,15 @@ pub struct Search {
     pub interrupted: bool,
 }
 
-/// Searches from one or many starts. `watch` sees every iteration of every start, from any thread, and stops all of them by returning
-/// `false`; the best so far is kept. The same seed gives the same bits for any number of threads.
+impl Search {
+    /// Designs computed in all.
+    pub fn evaluations(&self) -> u64 {
+        self.runs.iter().map(|r| r.evaluations).sum::<u64>() + self.explored.as_ref().map_or(0, |e| e.evaluations)
+    }
+}
+
+/// Searches from one or many starts, or the whole range. `watch` sees every iteration of every start, from any thread, and stops all of
+/// them by returning `false`; the best so far is kept. The same seed gives the same bits for any number of threads.
 pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bool + Sync)) -> Search {
     let interrupted = std::sync::atomic::AtomicBool::new(false);
     let go_on = |progress: &Progress| {
@@ -190,14 +209,19 @@ pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bo
         }
         on
     };
-    let tolerance = settings.nlp.feasibility.max(1e-6) * 10.0;
-    let run = |(index, start)| {
-        // Starts that have not begun when it is interrupted never do; the first always does, so that there is a best.
-        let begins = index == 0 || !interrupted.load(std::sync::atomic::Ordering::Relaxed);
-        begins.then(|| run_steps(task, settings, (index, start, 0), &go_on))
+    let tolerance = kept(settings);
+    let explored = settings.global.and_then(|asked| global::explore(task, settings, asked, &go_on));
+    let places = explored.as_ref().map_or(&[][..], |e| &e.places);
+    let run = |(index, start): (usize, Vec<f64>)| {
+        // Starts that have not begun when it is interrupted never do; the first, and the best place, always do, so that there is a best.
+        let begins = index <= usize::from(!places.is_empty()) || !interrupted.load(std::sync::atomic::Ordering::Relaxed);
+        let place = index.checked_sub(1).and_then(|i| places.get(i));
+        begins.then(|| {
+            place.map_or_else(|| run_steps(task, settings, (index, start, 0), &go_on), |p| polished(task, settings, (index, p), &go_on))
+        })
     };
     let evaluator = task.evaluator.as_ref();
-    let (starts, later) = all_starts(evaluator, settings);
+    let (starts, later) = all_starts(evaluator, settings, places);
     let first = starts.len();
     let mut runs: Vec<Option<Run>> = starts.into_par_iter().enumerate().map(run).collect();
     // All of the first have ended before any of the others begins, so that the number of threads changes nothing.
@@ -211,7 +235,7 @@ pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bo
     let all: Vec<usize> = (0..runs.len()).collect();
     let best = least(&feasible, &|r| r.goal).or_else(|| least(&all, &|r| r.violation));
     let basins = basins(task.evaluator.as_ref(), &runs, feasible);
-    Search { best, basins, interrupted: interrupted.into_inner(), runs }
+    Search { explored, best, basins, interrupted: interrupted.into_inner(), runs }
 }
 
 /// Starts near to the best designs that were found, in place of others spread over the ranges: as far from them as those lie from the middle
@@ -247,11 +271,43 @@ pub fn again(task: &Task, settings: &Settings, run: &Run, watch: &(dyn Fn(&Progr
     next
 }
 
+/// Searches on from a place of a search of the whole range; what it was, where that finds nothing as good.
+fn polished(task: &Task, settings: &Settings, (index, place): (usize, &Place), go_on: &dyn Fn(&Progress) -> bool) -> Run {
+    let tolerance = kept(settings);
+    // Steps that lead near from afar would lead away; where limits are missed, there is nothing to lead away from.
+    let first = if place.violation <= tolerance { task.steps.len().saturating_sub(1) } else { 0 };
+    let mut run = run_steps(task, settings, (index, place.x.clone(), first), go_on);
+    let lost = match (place.violation <= tolerance, run.feasible(tolerance)) {
+        (true, true) => run.goal - place.goal > settings.nlp.least_gain * place.goal.abs(),
+        (false, false) => run.violation.is_nan() || run.violation > place.violation,
+        (place, run) => place && !run,
+    };
+    if lost {
+        // With what limits it there, as far as that can be known.
+        let still = Settings { nlp: nlp::Settings { iteration_limit: 0, ..settings.nlp.clone() }, ..settings.clone() };
+        let here = run_steps(task, &still, (index, place.x.clone(), task.steps.len().saturating_sub(1)), &|_| true);
+        let (active, kkt_residual) = (here.active, here.kkt_residual);
+        let stop = if run.stop == Stop::Interrupted { run.stop } else { Stop::Stalled };
+        run.evaluations += here.evaluations;
+        run = Run { x: place.x.clone(), goal: place.goal, violation: place.violation, stop, active, kkt_residual, ..run };
+    }
+    run
+}
+
+/// A violation that counts as none.
+fn kept(settings: &Settings) -> f64 {
+    settings.nlp.feasibility.max(1e-6) * 10.0
+}
+
 /// The starts of the settings, the design itself if there are none: those to begin with, and those that may be moved near to what they find.
-fn all_starts(evaluator: &dyn Evaluator, settings: &Settings) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+fn all_starts(evaluator: &dyn Evaluator, settings: &Settings, places: &[Place]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let variables = evaluator.variables();
     let more = settings.more_starts.iter().filter(|x| x.len() == variables.len());
     let mut more = more.map(|x| x.iter().zip(variables).map(|(x, v)| x.max(v.lower).min(v.upper)).collect()).peekable();
+    if settings.global.is_some() {
+        let nominal = variables.iter().map(|v| v.nominal).collect();
+        return (std::iter::once(nominal).chain(places.iter().map(|p| p.x.clone())).chain(more).collect(), Vec::new());
+    }
     let mut own = if settings.starts == 0 && more.peek().is_some() { Vec::new() } else { starts(evaluator, settings) };
     let around = if own.len() >= FEWEST_TO_DIVIDE { own.len() / 2 } else { 0 };
     let later = own.split_off(own.len() - around);
@@ -304,7 +360,14 @@ fn run_steps(task: &Task, settings: &Settings, (index, start, first): (usize, Ve
         let history = &mut run.history;
         let solution = nlp::minimise(&mut posing, &start, &nlp, &mut |p: &nlp::Progress| {
             history.push([p.best_objective, p.best_violation]);
-            go_on(&Progress { start: index, step: number, iteration: p.iteration, goal: p.best_objective, violation: p.best_violation })
+            go_on(&Progress {
+                start: index,
+                step: number,
+                iteration: p.iteration,
+                goal: p.best_objective,
+                violation: p.best_violation,
+                global: None,
+            })
         });
         run.iterations += solution.counters.iterations;
         run.evaluations += posing.evaluations;
@@ -369,16 +432,17 @@ fn active(task: &Task, posing: &Posing, solution: &nlp::Solution) -> Vec<Active>
     found
 }
 
+/// Whether two designs lie in the same basin.
+fn near(evaluator: &dyn Evaluator, a: &[f64], b: &[f64]) -> bool {
+    evaluator.variables().iter().zip(a.iter().zip(b)).fold(0.0_f64, |m, (v, (a, b))| m.max((a - b).abs() / v.scale())) <= SAME
+}
+
 /// Groups runs by where they ended.
 fn basins(evaluator: &dyn Evaluator, runs: &[Run], mut feasible: Vec<usize>) -> Vec<Basin> {
     feasible.sort_by(|a, b| runs[*a].goal.total_cmp(&runs[*b].goal).then(a.cmp(b)));
-    let near = |a: &Run, b: &Run| {
-        let all = evaluator.variables().iter().zip(a.x.iter().zip(&b.x));
-        all.fold(0.0_f64, |m, (v, (a, b))| m.max((a - b).abs() / v.scale())) <= SAME
-    };
     let mut basins: Vec<Basin> = Vec::new();
     for index in feasible {
-        match basins.iter_mut().find(|b| near(&runs[b.best], &runs[index])) {
+        match basins.iter_mut().find(|b| near(evaluator, &runs[b.best].x, &runs[index].x)) {
             Some(basin) => basin.members.push(index),
             None => basins.push(Basin { best: index, members: vec![index] }),
         }

@@ -130,14 +130,9 @@ impl<'a> Posing<'a> {
     fn constraints(&mut self) {
         for (index, limit) in self.limits.iter().enumerate() {
             for at in limit.values.clone() {
-                // A bound moves inwards by a part of its own size, or of what is a large change where it is zero.
-                let inward = |bound: f64| match bound.abs() {
-                    f64::INFINITY => 0.0,
-                    0.0 => self.reserve.margin * limit.scale + self.reserve.of_limit(at),
-                    size => self.reserve.margin * size + self.reserve.of_limit(at),
-                };
-                self.constraint_lower.push((limit.lower + inward(limit.lower)) / limit.scale);
-                self.constraint_upper.push((limit.upper - inward(limit.upper)) / limit.scale);
+                let [lower, upper] = inner_bounds(limit, self.reserve, at);
+                self.constraint_lower.push(lower);
+                self.constraint_upper.push(upper);
                 self.sources.push(Source::Limit(index, at));
             }
         }
@@ -270,6 +265,17 @@ impl<'a> Posing<'a> {
             None => (y[place] * self.levels[index], Some(place), half_width),
         }
     }
+}
+
+/// The bounds of one value of a limit, in its scale, with the reserve inside them.
+pub(crate) fn inner_bounds(limit: &Limit, reserve: &Reserve, at: usize) -> [f64; 2] {
+    // A bound moves inwards by a part of its own size, or of what is a large change where it is zero.
+    let inward = |bound: f64| match bound.abs() {
+        f64::INFINITY => 0.0,
+        0.0 => reserve.margin * limit.scale + reserve.of_limit(at),
+        size => reserve.margin * size + reserve.of_limit(at),
+    };
+    [(limit.lower + inward(limit.lower)) / limit.scale, (limit.upper - inward(limit.upper)) / limit.scale]
 }
 
 /// A variable as a part of its range.

@@ -1,6 +1,6 @@
 //! Random numbers of searches: one stream, drawn by one thread, the same for a seed on every machine.
 
-use crate::sampling::mixed;
+use crate::sampling::{mixed, normal};
 
 /// The step of the counter (the golden ratio of 2⁶⁴).
 const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
@@ -25,6 +25,11 @@ impl Random {
     /// Evenly in [0, 1), in steps of 2⁻⁵³.
     pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / 9_007_199_254_740_992.0
+    }
+
+    /// Standard normal: the quantile of the middle of one of 2⁵² equal parts, which is a double.
+    pub(crate) fn normal(&mut self) -> f64 {
+        normal::quantile(((self.next() >> 12) as f64 + 0.5) / 4_503_599_627_370_496.0)
     }
 
     /// A whole number from 0 up to, and without, `n`; 0 for none.

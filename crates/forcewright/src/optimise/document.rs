@@ -30,6 +30,7 @@ impl Optimised {
                 "unit": unit.dimension().map_or("1", |d| d.si_symbol()), "before": before, "after": after,
             },
             "met": self.met(),
+            "search": self.search_document(),
             "variables": variables.collect::<Vec<_>>(),
             "stop": best.map(|b| word(b.stop)),
             "kkt_residual": best.map(|b| b.kkt_residual),
@@ -51,7 +52,7 @@ impl Optimised {
             "counters": {
                 "starts": self.search.runs.len(),
                 "iterations": self.search.runs.iter().map(|r| r.iterations).sum::<usize>(),
-                "evaluations": self.search.runs.iter().map(|r| r.evaluations).sum::<u64>(),
+                "evaluations": self.search.evaluations(),
             },
         })
     }

@@ -66,6 +66,7 @@ impl Optimised {
     pub fn study(&self) -> Study {
         let mut tables = vec![self.variable_table()];
         tables.extend(self.active_table());
+        tables.extend(self.place_table());
         tables.extend(self.basin_table());
         let mut figures = self.figures_of_both();
         figures.extend(self.convergence());
@@ -90,6 +91,7 @@ impl Optimised {
         all.push(say("Requirements", self.requirements_in_words(best)));
         all.push(say("What limits it", self.limits_in_words(best)));
         all.push(say("How it ended", self.end_in_words(best)));
+        all.extend(self.search.explored.as_ref().map(|found| say("Search", self.explored_in_words(found))));
         if self.search.runs.len() > 1 {
             all.push(say("Starts", self.starts_in_words()));
         }
@@ -200,6 +202,9 @@ impl Optimised {
             let names: Vec<&str> = active.iter().map(|a| a.name.as_str()).collect();
             return if names.is_empty() { "Not known.".to_owned() } else { format!("In the way of each other: {}.", names.join(", ")) };
         }
+        if active.is_empty() && best.kkt_residual.is_infinite() {
+            return "Not known: there are no derivatives at the design found.".to_owned();
+        }
         if active.is_empty() {
             return "Nothing: the best lies inside all limits and ranges.".to_owned();
         }
@@ -241,7 +246,7 @@ impl Optimised {
     }
 
     fn end_in_words(&self, best: &Run) -> String {
-        let evaluations: u64 = self.search.runs.iter().map(|r| r.evaluations).sum();
+        let evaluations = self.search.evaluations();
         let interrupted = if self.search.interrupted && best.stop != Stop::Interrupted { " Then it was interrupted." } else { "" };
         format!(
             "{}{interrupted} Distance from the conditions of an optimum {}, in {} iterations; {evaluations} designs were computed in all.",

@@ -143,9 +143,9 @@ impl Triangle {
 
 /// Singular values, largest first, of a square matrix given row by row, and its right singular vectors, one after the other.
 #[derive(Clone, Debug)]
-pub(super) struct Singular {
-    pub(super) values: Vec<f64>,
-    pub(super) vectors: Vec<Vec<f64>>,
+pub(crate) struct Singular {
+    pub(crate) values: Vec<f64>,
+    pub(crate) vectors: Vec<Vec<f64>>,
 }
 
 /// Sweeps of rotations: a handful are enough for any matrix of a few columns.
@@ -154,7 +154,7 @@ const SWEEPS: usize = 60;
 impl Singular {
     /// One-sided Jacobi rotations, which find small values to high relative accuracy; J. Demmel & K. Veselić, "Jacobi's method is more
     /// accurate than QR", SIAM J. Matrix Analysis 13(4), 1204–1245, 1992.
-    pub(super) fn of(n: usize, matrix: &[f64]) -> Self {
+    pub(crate) fn of(n: usize, matrix: &[f64]) -> Self {
         let mut columns: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| matrix[i * n + j]).collect()).collect();
         let mut vectors: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
