@@ -182,9 +182,9 @@ pub enum Purpose {
 
 /// Most starts and most samples.
 const MOST_STARTS: f64 = 1e5;
-/// Fewest and most designs of a search of the whole range, and the number of them without a word.
+/// Fewest and most designs of a search of the whole range.
 const EVALUATIONS: [f64; 2] = [100.0, 1e8];
-/// See [`EVALUATIONS`].
+/// Designs of a search of the whole range, without a word.
 pub const USUAL_EVALUATIONS: u32 = 10_000;
 const MOST_SAMPLES: f64 = 1e8;
 /// Most goals, and largest populations and most generations of a trade-off.
