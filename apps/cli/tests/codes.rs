@@ -131,6 +131,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("W0521", "a warning of the analysis: tests of scenarios"),
     ("W0522", "a warning of the analysis: tests of scenarios"),
     ("W0523", "a warning of the analysis: tests of scenarios"),
+    ("W0524", "a warning of the analysis: tests of lateral motions"),
     ("W0512", "a warning of the tolerance study"),
     ("W0513", "a warning of the tolerance study: tests of tolerance"),
     ("E0509", "what the engine refuses beyond the rules of the file: none is known that a file can reach"),

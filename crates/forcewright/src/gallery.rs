@@ -34,6 +34,7 @@ pub const EXAMPLES: &[Example] = examples![
     "compliant/lan-two-layers",
     "compliant/lan-circular",
     "compliant/lan-end-effector-surface",
+    "compliant/two-directions",
     "compliant/optimise-lan-box",
     "compliant/optimise-lan-equal-forces",
     "compliant/tolerance-lan-thin",

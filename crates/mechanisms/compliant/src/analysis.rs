@@ -10,7 +10,7 @@ use crate::design::Design;
 use crate::force_curve::{Extrema, ForceCurve, Interval, Turn};
 use crate::metrics::METRICS;
 use crate::room::{Margin, Nearest, gap_around_m, margin, nearest};
-use crate::scenario::SurfaceRun;
+use crate::scenario::{LateralMap, SurfaceRun};
 use crate::stack::Stack;
 use crate::sway::Sway;
 
@@ -48,6 +48,8 @@ pub struct Behaviour {
     pub stack: Option<Stack>,
     /// How the whole layout resists sideways, where symmetry separates that from the motion along the load.
     pub sway: Option<Sway>,
+    /// Forces on the tip where it also moves across the load, if the project has such a motion.
+    pub lateral: Option<LateralMap>,
 }
 
 /// What a slowly driven device does at the limit point at which its path ends. SI, of the drawn network.
@@ -78,6 +80,8 @@ impl Behaviour {
     pub fn of(design: &Design, progress: Progress<'_>) -> Result<Self, NetworkError> {
         let settings = design.settings();
         let mut result = None;
+        // A map is a path per place.
+        let share = design.lateral.as_ref().map_or(1.0, |lateral| 1.0 / (1.0 + LateralMap::places(lateral) as f64));
         // A second attempt begins anew, but progress never goes back.
         let mut furthest = 0.0_f64;
         let mut progress = |fraction: f64| {
@@ -86,7 +90,7 @@ impl Behaviour {
         };
         for count in STATIONS {
             let stations: Vec<f64> = (0..=count).map(|i| design.load_end * i as f64 / count as f64).collect();
-            let path = trace(&design.network, &stations, &settings, &mut progress)?;
+            let path = trace(&design.network, &stations, &settings, &mut |f| progress(share * f))?;
             let behaviour = Self::from_path(path, design);
             let enough = behaviour.interpolation_error <= INTERPOLATION || !behaviour.whole;
             result = Some(behaviour);
@@ -98,9 +102,11 @@ impl Behaviour {
         // Of layers in series one would jump before the others.
         let alone = design.layout.layers == 1;
         if alone && matches!(behaviour.path.status, Status::NoEquilibriumBeyond { .. }) && !behaviour.path.points.is_empty() {
-            behaviour.snap = snap(design, &settings, &mut progress)?;
+            behaviour.snap = snap(design, &settings, &mut |f| progress(share * f))?;
         }
         behaviour.sway = Sway::of(design, &behaviour.path);
+        let mut rest = |f: f64| progress(share + (1.0 - share) * f);
+        behaviour.lateral = design.lateral.as_ref().map(|lateral| LateralMap::of(design, lateral, &mut rest)).transpose()?;
         behaviour.stack = behaviour.curve.as_ref().filter(|_| design.layout.layers > 1).map(|c| Stack::of(c, design.layout.layers));
         Ok(behaviour)
     }
@@ -131,6 +137,7 @@ impl Behaviour {
             snap: None,
             stack: None,
             sway: None,
+            lateral: None,
         }
     }
 
@@ -373,6 +380,19 @@ impl Measured {
         self.surface = run;
     }
 
+    /// What happens on the map of axial and lateral displacements.
+    fn lateral(&mut self, map: &LateralMap) {
+        let Some(summary) = map.summary() else { return };
+        self.set("lateral_force_mean", summary.lateral_mean_n);
+        self.set("lateral_force_max", summary.lateral_max_n);
+        self.set("lateral_force_spread", summary.lateral_spread);
+        self.set("axial_force_mean", summary.axial_mean_n);
+        self.set("axial_force_spread", summary.axial_spread);
+        self.set("axial_force_coupling", summary.axial_coupling);
+        self.set("tip_stress_max", summary.stress_pa);
+        self.set("tip_rotation_max", summary.rotation_rad);
+    }
+
     fn set(&mut self, name: &str, value: impl Into<Option<f64>>) {
         if let Some(index) = METRICS.iter().position(|m| m.name == name) {
             self.values[index] = value.into();
@@ -388,6 +408,9 @@ pub fn measure(design: &Design, behaviour: &Behaviour) -> Measured {
     let mut m = Measured { values: vec![None; METRICS.len()], ..Measured::default() };
     m.set("length_ratio_max", length_ratio(design));
     m.set("mass", mass_kg(design));
+    if let Some(map) = &behaviour.lateral {
+        m.lateral(map);
+    }
     let Some(curve) = &behaviour.curve else { return m };
     m.set("stiffness_initial", behaviour.path.points.first().map(|p| behaviour.stiffness_n_per_m(p)));
     let Extrema { max, min } = behaviour.extrema();
@@ -507,11 +530,13 @@ pub(crate) fn display_unit(design: &Design, index: usize) -> Unit {
         D::Stiffness => design.units.stiffness.clone(),
         D::Energy => named("mJ"),
         D::Mass => named("g"),
+        D::Angle => named("deg"),
         D::Ratio
             if info.name == "range_ratio"
                 || info.name == "flat_ratio"
                 || info.name == "band_ratio"
-                || info.name == "contact_force_spread" =>
+                || info.name.ends_with("_force_spread")
+                || info.name == "axial_force_coupling" =>
         {
             named("%")
         }

@@ -391,11 +391,19 @@ impl Context<'_> {
         if let Some(fix) = scenario::fix(self.design, self.measured, name, broken) {
             return fix;
         }
+        if let Some(fix) = scenario::lateral::fix(name) {
+            return fix;
+        }
         let sways = self.behaviour.sway.and_then(|s| s.from_m).filter(|_| name == LATERAL);
         let Some(from) = sways else { return "change the design, or relax the limit".to_owned() };
         let from = format_si(from, &self.design.units.displacement, 4);
         let how = if broken { "free to turn, the block is not held at all" } else { "the block sways" };
         format!("without a guide {how} from Δ = {from} on (W0510): guide it, shorten the travel, or change the shape")
+    }
+
+    /// Why a metric of a scenario has no value; `None` for other metrics.
+    fn missing_of_scenarios(&self, name: &str) -> Option<String> {
+        scenario::missing(self.design, self.measured, name).or_else(|| scenario::lateral::missing(self.design, self.behaviour, name))
     }
 
     /// COMP006: limits on metrics.
@@ -428,7 +436,7 @@ impl Context<'_> {
                     scale: None,
                     basis: info.doc.to_owned(),
                     fix: self.limit_fix(info.name, broken),
-                    missing: scenario::missing(self.design, self.measured, info.name).unwrap_or_else(|| match info.name {
+                    missing: self.missing_of_scenarios(info.name).unwrap_or_else(|| match info.name {
                         "mass" => "the density of a material is not known; give `density` in its table".to_owned(),
                         _ if !self.behaviour.whole => self.unreached(),
                         LATERAL if value.is_none() && !broken && self.behaviour.sway.is_some() => {

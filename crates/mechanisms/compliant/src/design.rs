@@ -59,6 +59,8 @@ pub struct Design {
     pub making: Making,
     /// The surface that its tip is drawn along.
     pub surface: Option<scenario::Surface>,
+    /// The motion of its tip across the load.
+    pub lateral: Option<scenario::Lateral>,
     /// What it must do; `None` if the project asks for nothing.
     pub requirements: Option<Requirements>,
     /// Units in which people are shown results.
@@ -234,6 +236,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         requirements.envelope = requirements.envelope.map(|asked| layout.for_drawn(asked));
     }
     let surface = scenario::resolve(spec, &network, &loads, diagnostics);
+    let lateral = scenario::lateral::resolve(spec, &network, &loads, &layout, diagnostics);
     if diagnostics.has_errors() {
         return None;
     }
@@ -259,6 +262,7 @@ pub(crate) fn resolve(spec: &mut Spec, diagnostics: &mut Diagnostics) -> Option<
         accuracy: si(spec.model.accuracy.as_ref())?,
         making: making_of(spec, diagnostics),
         surface,
+        lateral,
         requirements,
         units,
     })

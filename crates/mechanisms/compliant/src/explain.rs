@@ -226,7 +226,7 @@ pub(crate) const CODES: &[Explanation] = &[
     code(
         "E0521",
         "a scenario that the design cannot play",
-        "Along a surface the mechanism follows its force curve from rest. So there is one load, it prescribes a displacement (`travel`), and its node is held as the linear bearings of the tip hold it: `support = \"slider\"` along the load, without turning.",
+        "Along a surface the mechanism follows its force curve from rest. So there is one load, it prescribes a displacement (`travel`), and its node is held as the linear bearings of the tip hold it: `support = \"slider\"` along the load, without turning.\n\nA lateral motion, `[scenario.lateral]`, takes along the guide of the tip. It too has one load that prescribes a displacement, on a node with `support = \"slider\"` along the load; that may turn (`rotation = \"free\"`). Copies must all go the same way: mirrored halves, legs around an axis and layers in series do not, so draw the whole mechanism.",
     ),
     code(
         "W0520",
@@ -247,5 +247,10 @@ pub(crate) const CODES: &[Explanation] = &[
         "W0523",
         "the mechanism lets go of the surface",
         "The force over the displacement changes its sign: the mechanism would pull its tip away and come to rest in another shape. The metrics of the contact have no value.",
+    ),
+    code(
+        "W0524",
+        "the map of a lateral motion has gaps",
+        "At every lateral displacement δ the tip is first moved across the load, free along it, and then pushed along it. The message names the first δ at which that does not lead to every Δ of the map: the mechanism snaps, a beam is pulled straight, or the states become unstable although both displacements are held, so that a real part leaves the computed shape. Metrics of the map have no value where a place of its window is missing; figures show what was reached.\n\nStrips that carry a tip whose angle is held must be parallel: others lock, and buckle.",
     ),
 ];

@@ -84,6 +84,7 @@ pub(crate) fn curves(design: &Design, behaviour: &Behaviour, measured: &Measured
         one("energy", "Elastic energy U", Dimension::Energy, millijoule, all(Behaviour::energy_j)),
     ];
     curves.extend(crate::scenario::curves(design, measured));
+    curves.extend(crate::scenario::lateral::curves(design, behaviour));
     curves
 }
 
@@ -98,6 +99,7 @@ pub(crate) fn figures(design: &Design, behaviour: &Behaviour, measured: &Measure
     if behaviour.curve.is_some() {
         all.push(force_figure(design, behaviour, measured));
         all.extend(crate::scenario::figures(design, measured));
+        all.extend(crate::scenario::lateral::figures(design, behaviour));
         all.extend(behaviour.stack.as_ref().filter(|s| s.apart_from_m.is_some()).map(|s| layers_figure(design, behaviour, s)));
         all.push(stress_figure(design, behaviour, measured));
         if design.network.beams.len() > 1 {

@@ -59,6 +59,7 @@ pub use metrics::METRICS;
 pub use parts::Making;
 pub use room::{Margin, Nearest, margin, nearest};
 pub use scenario::{Contact, Flat, Join, Pass, Profile, Stop, Surface, SurfaceRun, TipPath, Touch, Why};
+pub use scenario::{Lateral, LateralMap, Row, Shortfall, Summary, TipState};
 pub use spec::Spec;
 pub use stack::Stack;
 pub use sway::Sway;

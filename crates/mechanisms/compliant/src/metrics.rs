@@ -69,4 +69,37 @@ pub const METRICS: &[MetricInfo] = &[
         false,
         "Largest stress with what the curvature of its beam adds at the inner face, by the factor 1 + thickness/(3 radius), the whole travel.",
     ),
+    metric(
+        "lateral_force_mean",
+        Dimension::Force,
+        true,
+        "Mean force on the tip across the load, over the window of the lateral motion and all its Δ.",
+    ),
+    metric("lateral_force_max", Dimension::Force, false, "Largest magnitude of the lateral force over that window and all Δ."),
+    metric(
+        "lateral_force_spread",
+        Dimension::Ratio,
+        true,
+        "(max − min)/|max + min| of the lateral force over that window and all Δ; above 100 % where it changes its sign.",
+    ),
+    metric(
+        "axial_force_mean",
+        Dimension::Force,
+        false,
+        "Mean force on the tip along the load, over the window of the lateral motion and all its Δ.",
+    ),
+    metric("axial_force_spread", Dimension::Ratio, true, "(max − min)/|max + min| of the axial force over that window and all Δ."),
+    metric(
+        "axial_force_coupling",
+        Dimension::Ratio,
+        true,
+        "The same over that window at one Δ, where it is largest: what moving sideways changes of the axial force.",
+    ),
+    metric(
+        "tip_stress_max",
+        Dimension::Stress,
+        true,
+        "Largest stress over all beams and both faces, over the window of the lateral motion and all its Δ.",
+    ),
+    metric("tip_rotation_max", Dimension::Angle, false, "Largest rotation of the tip over the window of the lateral motion and all its Δ."),
 ];

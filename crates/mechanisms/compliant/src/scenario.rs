@@ -1,6 +1,8 @@
-//! What a stage does with the mechanism: it carries it sideways along a surface (section IV of the paper).
+//! What a stage does with the mechanism: it carries it sideways along a surface (section IV of the paper), or moves its tip sideways while
+//! that is pushed.
 
 mod keys;
+pub(crate) mod lateral;
 mod path;
 mod profile;
 mod results;
@@ -17,6 +19,7 @@ use crate::loads::{Control, Loads};
 use crate::spec::Spec;
 
 pub(crate) use keys::Scenario;
+pub use lateral::{Lateral, LateralMap, Row, Shortfall, Summary, TipState};
 pub use path::{TipPath, Touch};
 pub use profile::{Join, Profile};
 pub(crate) use results::{curves, figures, fix, limits, missing, model, never_ends, sources, status, warnings};
@@ -58,6 +61,7 @@ impl Surface {
 
 /// The surface of a project, if it has one. Faults are reported.
 pub(crate) fn resolve(spec: &Spec, network: &Network, loads: &Loads, diagnostics: &mut Diagnostics) -> Option<Surface> {
+    check_given(spec, diagnostics);
     let typed = &spec.scenario.surface;
     let place = typed.present.as_ref()?.span;
     check_drive(network, loads, place, diagnostics);
@@ -74,6 +78,20 @@ pub(crate) fn resolve(spec: &Spec, network: &Network, loads: &Loads, diagnostics
         tip_friction: or_zero(&typed.tip_friction),
         there_and_back: typed.there_and_back.as_ref().is_some_and(|f| f.value),
     })
+}
+
+/// A scenario without anything in it is a slip.
+fn check_given(spec: &Spec, diagnostics: &mut Diagnostics) {
+    let scenario = &spec.scenario;
+    let nothing = scenario.surface.present.is_none() && scenario.lateral.present.is_none();
+    // A table that was given but not understood has been reported.
+    if let Some(present) = scenario.present.as_ref().filter(|_| nothing && !diagnostics.has_errors()) {
+        diagnostics.push(
+            Diagnostic::error("E0302", present.span, "nothing happens: `scenario` is empty")
+                .label("what does a robot do with it?")
+                .help("describe `[scenario.surface]` or `[scenario.lateral]`"),
+        );
+    }
 }
 
 /// The scenario takes the force from a curve over a prescribed displacement from rest, of a block that its bearings guide along it.

@@ -50,6 +50,7 @@ pub(crate) fn model(design: &Design) -> Vec<Statement> {
         statement("Material data", material_data(design)),
     ];
     all.extend(crate::scenario::model(design));
+    all.extend(crate::scenario::lateral::model(design));
     all
 }
 
@@ -173,6 +174,7 @@ pub(crate) fn limits(design: &Design) -> Vec<Statement> {
         ),
     ];
     all.extend(crate::scenario::limits(design));
+    all.extend(crate::scenario::lateral::limits(design));
     all
 }
 
@@ -366,6 +368,7 @@ pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measur
     }
     all.extend(leaving(design, behaviour));
     all.extend(crate::scenario::warnings(design, behaviour, measured));
+    all.extend(crate::scenario::lateral::warnings(design, behaviour));
     if behaviour.interpolation_error > 1e-6 {
         all.push(Warning {
             code: "W0505",

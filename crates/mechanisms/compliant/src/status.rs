@@ -114,8 +114,10 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour, measured: &Measured
         };
     }
     let (kind, message, advice) = ending(&words, behaviour);
-    let along = crate::scenario::status(design, measured).map_or_else(String::new, |along| format!("; {along}"));
-    model::Status { kind, message: format!("{message}{along}"), advice }
+    let parts = [Some(message), crate::scenario::status(design, measured), crate::scenario::lateral::status(design, behaviour)];
+    let message = parts.into_iter().flatten().collect::<Vec<_>>().join("; ");
+    let interrupted = behaviour.lateral.as_ref().is_some_and(|map| map.interrupted);
+    model::Status { kind: if interrupted { K::Interrupted } else { kind }, message, advice }
 }
 
 fn ending(words: &Words<'_>, behaviour: &Behaviour) -> (K, String, Option<String>) {

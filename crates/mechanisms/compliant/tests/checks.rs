@@ -69,7 +69,11 @@ fn every_metric_can_be_limited_from_both_sides() {
             let found = outcome(NODES, &[&base[..], &[min.trim_end()]].concat());
             let check = found.checks.iter().find(|c| c.name == name).unwrap();
             assert_eq!((check.state, check.code), (CheckState::NotAssessed, "COMP006"), "{name}");
-            let section = if name == "envelope_margin" { "`requirements.envelope`" } else { "`[scenario.surface]`" };
+            let section = match name {
+                "envelope_margin" => "`requirements.envelope`",
+                _ if ["lateral_", "axial_", "tip_"].iter().any(|start| name.starts_with(start)) => "`[scenario.lateral]`",
+                _ => "`[scenario.surface]`",
+            };
             assert!(check.advice.as_deref().is_some_and(|a| a.contains(section)), "{name}: {:?}", check.advice);
             continue;
         };

@@ -8,6 +8,17 @@ use forcewright_contract::describe::{Describe, Located, Param, Section, Slot, Vi
 #[derive(Debug, Default)]
 pub(crate) struct Scenario {
     pub surface: Section<Surface>,
+    pub lateral: Section<Lateral>,
+}
+
+/// A motion of the tip across the load.
+#[derive(Debug, Default)]
+pub(crate) struct Lateral {
+    pub travel: Slot<[Quantity; 2]>,
+    pub window: Slot<[Quantity; 2]>,
+    pub axial: Slot<[Quantity; 2]>,
+    pub places: Slot<u32>,
+    pub levels: Slot<u32>,
 }
 
 /// A surface that the tip is drawn along.
@@ -33,14 +44,20 @@ const JOINS: &[Word] = &[
 /// Points of a profile in the project file.
 const MOST_POINTS: usize = 200;
 const LARGEST_M: f64 = 10.0;
+/// A range of displacements is at least a tenth of a micrometre long.
+pub(super) const SHORTEST_M: f64 = 1e-7;
+/// Displacements of a map in either direction.
+const MOST_PLACES: f64 = 101.0;
 /// Above any pair of materials.
 const LARGEST_FRICTION: f64 = 2.0;
 
 impl Describe for Scenario {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        self.surface.describe(
+        self.surface
+            .describe(v, &Param::new("surface", "A stage carries the mechanism sideways; a tip on its guided block follows a surface."));
+        self.lateral.describe(
             v,
-            &Param::new("surface", "A stage carries the mechanism sideways; a tip on its guided block follows a surface.").required(),
+            &Param::new("lateral", "The guide of the tip, along the load, is also moved across the load: axial and lateral force over a map of both displacements."),
         );
     }
 }
@@ -87,5 +104,33 @@ impl Describe for Surface {
             &mut self.tip_radius,
         );
         v.flag(&Param::new("return", "Whether the stage also comes back; without it, it does not."), &mut self.there_and_back);
+    }
+}
+
+impl Describe for Lateral {
+    fn describe(&mut self, v: &mut dyn Visitor) {
+        let range = |key, doc| Param::new(key, doc).of(Dimension::Length);
+        v.point(
+            &range(
+                "travel",
+                "Least and largest lateral displacement δ, counted along the load's direction turned by 90° counter-clockwise.",
+            )
+            .within(-LARGEST_M, LARGEST_M)
+            .required(),
+            &mut self.travel,
+        );
+        v.point(
+            &range("window", "The part of `travel` that metrics look at; without it the whole.").within(-LARGEST_M, LARGEST_M),
+            &mut self.window,
+        );
+        v.point(
+            &range("axial", "Least and largest displacement Δ along the load, at which the tip is moved across.")
+                .within(0.0, LARGEST_M)
+                .required(),
+            &mut self.axial,
+        );
+        let count = |key, doc| Param::new(key, doc).within(2.0, MOST_PLACES);
+        v.count(&count("places", "Number of lateral displacements in equal steps over `travel`; without it 11."), &mut self.places);
+        v.count(&count("levels", "Number of displacements along the load in equal steps over `axial`; without it 5."), &mut self.levels);
     }
 }
