@@ -101,6 +101,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("E0911", "a calibration: tests of calibrate"),
     ("W0908", "a calibration: tests of calibrate"),
     ("W0909", "a calibration: tests of calibrate"),
+    ("W0910", "a calibration: tests of calibrate"),
     ("W0901", "a calibration: tests of calibrate"),
     ("W0902", "a calibration: tests of calibrate"),
     ("W0903", "a calibration: tests of calibrate"),

@@ -85,6 +85,11 @@ pub(crate) const CODES: &[Explanation] = &[
         title: "too few points to judge",
         text: "Whether the parameters explain a curve shows in what they leave: with few points beyond the number of parameters any pattern can be chance. Nothing contradicts the estimates, and nothing confirms the model. Measure at more places; a dozen beyond the number of parameters is enough.",
     },
+    Explanation {
+        code: "W0910",
+        title: "rows that repeat each other",
+        text: "Every row counts as a measurement of its own. Where a logger writes faster than it measures, or a table was pasted twice, rows are copies that tell nothing new, and intervals are too narrow by the root of how often each is there. Remove them. Rows that agree because a display shows few digits are measurements, and may stay.",
+    },
 ];
 
 /// Why there are no parameters.
@@ -116,6 +121,8 @@ pub struct Calibrated {
     pub unit_sizes: Vec<f64>,
     /// The points that counted.
     pub points: Points,
+    /// The curve as it is drawn, branch by branch, over the range of its points.
+    lines: Vec<picture::Line>,
     /// How many of them lie beyond the ends of the curve, on the bench that was found.
     pub beyond: usize,
     /// Name of the measurement.
@@ -181,6 +188,7 @@ impl Loaded {
         let values: Vec<f64> = found.parameters.iter().map(|p| p.estimate.value).collect();
         let text = written(&ready, &values)?;
         let (units, unit_sizes) = wording::units(&ready.wanted, &ready.axes);
+        let lines = ready.lines(&values);
         let beyond = ready.points.beyond(&ready.bench_at(&values));
         ready.say_what_is_left_out(&mut diagnostics);
         let mut calibrated = Calibrated {
@@ -188,6 +196,7 @@ impl Loaded {
             units,
             unit_sizes,
             points: ready.points,
+            lines,
             beyond,
             measurement: ready.measurement,
             axes: ready.axes,

@@ -374,6 +374,39 @@ fn a_transmission_tells_its_friction() {
     assert!(hub.estimate.interval.contains(hub.parameter.start) && hub.error < 1e-4, "{:?} {}", found.rows(), found.residual_verdict());
 }
 
+/// Measured about the shift itself: between its stations the curve has its corners where the analysis has them. Without noise the friction
+/// comes out to what the analysis rounds to; curves without corners would miss it by a thousandth.
+#[test]
+fn points_about_the_shift_tell_the_friction() {
+    let example = forcewright::gallery::find("butin-2").unwrap().text;
+    let with = |hub: &str| {
+        let changed = example.replace("hub = \"0.12 ± 0.03\"", &format!("hub = {hub}")).replace("bore = \"0.12 ± 0.03\"", "bore = 0.35");
+        assert_eq!(changed.matches("0.12 ± 0.03").count(), 0, "the example has another friction");
+        changed
+    };
+    let rising = curve(&with("0.2"), "characteristic", 0);
+    let [low, high] = [1.0, 3.0].map(|slope| rising.windows(2).filter(|w| w[1][1] - w[0][1] < slope * (w[1][0] - w[0][0])).count());
+    assert!(low < high && high < rising.len() - 1, "level, then steep: {low} {high}");
+    let points = at_even_places(&rising, [2e-3, 0.024], 58).into_iter().map(|[x, y]| [1e3 * x, 1e3 * y]);
+    let start = with("0.19");
+    let study = format!("{AXES}x = \"in / N*mm\"\ny = \"out / N*mm\"\n[calibrate]\nparameters = {{ \"design.friction.hub\" = {{}} }}\n");
+    let found = calibrated(&format!("{start}{study}"), &csv("in / N*mm,out / N*mm", points)).unwrap();
+    let value = found.fit.parameters[0].estimate.value;
+    assert!((value - 0.2).abs() < 1e-6, "{value}");
+}
+
+/// Rows that were written twice count twice, and that is told.
+#[test]
+fn copied_rows_are_told_of() {
+    let once = strip_csv(187.0, 0.001, 3);
+    let mut lines = once.lines();
+    let header = lines.next().unwrap();
+    let twice = lines.fold(format!("{header}\n"), |text, line| format!("{text}{line}\n{line}\n"));
+    assert!(!codes(&calibrated(STRIP, &once).unwrap()).contains(&"W0910"));
+    let found = calibrated(STRIP, &twice).unwrap();
+    assert!(codes(&found).contains(&"W0910"), "{:?}", codes(&found));
+}
+
 /// With a variant, the estimates go into it; where the file has one of that name, into another; what the command line sets is written.
 #[test]
 fn estimates_have_a_variant_of_their_own() {

@@ -76,13 +76,14 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
 /// Tells where the search stands.
 struct Told {
     last: Instant,
+    said: String,
     bar: Option<indicatif::ProgressBar>,
 }
 
 impl Told {
     fn new() -> Self {
         let bar = stderr().is_terminal().then(indicatif::ProgressBar::new_spinner);
-        Self { last: Instant::now(), bar }
+        Self { last: Instant::now(), said: String::new(), bar }
     }
 
     fn see(&mut self, progress: Progress) {
@@ -97,7 +98,12 @@ impl Told {
             bar.tick();
         } else if self.last.elapsed() >= OFTEN {
             self.last = Instant::now();
-            output::narrate(&format!("{}\n", line()));
+            let line = line();
+            // A long round says the same again.
+            if line != self.said {
+                output::narrate(&format!("{line}\n"));
+                self.said = line;
+            }
         }
     }
 

@@ -14,6 +14,7 @@ mod loss;
 mod profile;
 mod residuals;
 mod search;
+mod stations;
 
 use std::fmt;
 

@@ -68,6 +68,20 @@ impl Points {
         self.x.iter().zip(&self.raw).filter(|(x, raw)| !within(self.computed, place(bench, **x, **raw))).count()
     }
 
+    /// How many of the points repeat another one of their branch exactly.
+    pub(super) fn copies(&self) -> usize {
+        let mut first = 0;
+        let of_branch = |branch: &Branch| {
+            let own = first..first + branch.x.len();
+            first = own.end;
+            let mut each: Vec<[u64; 2]> = own.map(|i| [self.x[i].to_bits(), self.raw[i].to_bits()]).collect();
+            each.sort_unstable();
+            each.dedup();
+            branch.x.len() - each.len()
+        };
+        self.branches.iter().map(of_branch).sum()
+    }
+
     /// Where points count, and where they were measured.
     pub(super) fn ranges(&self, record: &Record, [x, _]: &[Axis; 2], branch: &str) -> String {
         let show = |si: f64| format_si(si, &record.units[0], 4);

@@ -10,6 +10,8 @@ use super::Calibrated;
 
 /// Distance of what was measured from a prior's mean, in standard deviations of the difference, that contradicts it.
 const CONTRADICTION: f64 = 3.0;
+/// Part of the points from which repeated ones are told of.
+const MANY_COPIES: f64 = 0.2;
 /// Too few points to tell anything.
 const TOO_FEW: &str = "Too few points to judge";
 /// Weight below which a point hardly counts.
@@ -285,6 +287,11 @@ impl Calibrated {
             let (points, lie) = if self.beyond == 1 { ("point", "lies") } else { ("points", "lie") };
             let message = format!("{} {points} that count {lie} beyond the ends of the curve, on the bench that was found", self.beyond);
             all.push(("W0908", message, "compute further, or leave out the ends of the record"));
+        }
+        let (copies, count) = (self.points.copies(), self.points.x.len());
+        if copies as f64 > MANY_COPIES * count as f64 {
+            let message = format!("{copies} of {count} points repeat another one exactly, and count as if they had been measured");
+            all.push(("W0910", message, "if a logger wrote rows twice, remove the copies: with them intervals are too narrow"));
         }
         if self.fit.residuals.unexplained {
             all.push((

@@ -10,8 +10,13 @@ use crate::checks::wanted_force_n;
 use crate::design::{Design, Hand, Motor, Scatter, Source};
 use crate::metrics::LavtMetrics;
 
-/// Input torques of the curve that studies see.
+/// Input torques of the curve that studies see: evenly, …
 const STATIONS: usize = 81;
+/// … and about the shift of the design of the file, from this part of the torque at which it begins to this multiple of that at which it ends.
+const ABOUT_THE_SHIFT: [f64; 2] = [0.6, 1.5];
+const STATIONS_ABOUT: usize = 120;
+/// Nearer ones, over the largest, are one.
+const SAME: f64 = 1e-6;
 /// Friction that no pair of surfaces has: where no friction is enough.
 const NO_FRICTION: f64 = 10.0;
 
@@ -203,7 +208,16 @@ impl Measuring for Transmissions {
 
     fn stations(base: &Design) -> Vec<f64> {
         let top_nm = base.requirements.as_ref().map_or(0.0, |r| r.input_nm);
-        (0..STATIONS).map(|i| top_nm * i as f64 / (STATIONS - 1) as f64).collect()
+        let even = |[from, to]: [f64; 2], n: usize| (0..n).map(move |i| from + (to - from) * i as f64 / (n - 1) as f64);
+        let mut all: Vec<f64> = even([0.0, top_nm], STATIONS).collect();
+        if let Ok(Behaviour { statics, .. }) = Behaviour::of(base) {
+            let shift_nm = [statics.transition_input_nm(), statics.plateau_end_nm(statics.transition_output_nm())];
+            let about = [0, 1].map(|i| (ABOUT_THE_SHIFT[i] * shift_nm[i]).min(top_nm));
+            all.extend(even(about, STATIONS_ABOUT));
+        }
+        all.sort_by(f64::total_cmp);
+        all.dedup_by(|next, kept| *next - *kept <= SAME * top_nm);
+        all
     }
 
     fn evaluated(design: &Design, stations: &[f64], curve: &mut Vec<f64>) -> Result<Values<LavtMetrics>, String> {

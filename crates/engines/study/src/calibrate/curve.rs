@@ -1,14 +1,13 @@
 //! A curve of an evaluator at the places where it was measured, on a bench that shifts and gives way.
 //!
-//! Measured at `x`, the bench shows `y = F(ξ) + y₀` with `x = ξ + x₀ + c F(ξ)`: `x₀`, `y₀` are its zero, `c` its compliance. Between its
-//! stations a curve is a cubic of each interval with the slopes of the polynomial through the five nearest stations: once continuously
-//! differentiable, and linear in the values, so that their Jacobian goes the same way.
+//! Measured at `x`, the bench shows `y = F(ξ) + y₀` with `x = ξ + x₀ + c F(ξ)`: `x₀`, `y₀` are its zero, `c` its compliance.
 
 use std::fmt;
 
 use forcewright_base::roots;
 
 use super::Model;
+use super::stations::{Shape, Stations};
 use crate::evaluator::{Evaluation, Evaluator, Failure, Workspace};
 
 /// Zero and compliance of a bench.
@@ -111,7 +110,7 @@ impl Model for Curve<'_> {
         if derivatives {
             // Of the curves that are compared, and of nothing else that the evaluator computes.
             let mut rows = vec![false; own.values.len()];
-            for index in self.branches.iter().flat_map(|(stations, _)| &stations.index) {
+            for index in self.branches.iter().flat_map(|(stations, _)| stations.values()) {
                 rows[*index] = true;
             }
             self.evaluator.differentiate(&x[..inner], &rows, &mut own, room)?;
@@ -119,10 +118,11 @@ impl Model for Curve<'_> {
         out.values.clear();
         out.jacobian.clear();
         for (stations, branch) in &self.branches {
-            stations.check(bench.compliance, &own.values)?;
+            let shape = stations.shape(&own.values);
+            check(&shape, bench.compliance)?;
             for measured in &branch.x {
-                let at = stations.place(&bench, *measured, &own.values)?;
-                let (value, slope) = stations.weights(at);
+                let at = place(&shape, &bench, *measured)?;
+                let (value, slope) = shape.weights(at);
                 let of = |weights: &[(usize, f64)]| weights.iter().map(|(i, w)| w * own.values[*i]).sum::<f64>();
                 let (force, rate) = (of(&value), of(&slope));
                 out.values.push(force + bench.offset[1]);
@@ -143,119 +143,27 @@ impl Model for Curve<'_> {
     }
 }
 
-/// Most stations through which a slope is taken.
-const STENCIL: usize = 5;
-
-/// Where values of an output stand, in ascending order.
-struct Stations {
-    at: Vec<f64>,
-    /// Place of each value among all values.
-    index: Vec<usize>,
-    /// Slope at each station: weights of values.
-    slopes: Vec<Vec<(usize, f64)>>,
+/// A bench that gives way more than the curve pushes back jumps: what it shows is no function of where it is.
+fn check(shape: &Shape<'_>, compliance: f64) -> Result<(), Failure> {
+    let least = shape.slopes().map(|slope| compliance * slope).fold(f64::INFINITY, f64::min);
+    if 1.0 + least > 0.0 { Ok(()) } else { Err(Failure { reason: "a bench this soft snaps through with the mechanism".to_owned() }) }
 }
 
-/// Values times weights, and slopes times weights.
-type Weights = Vec<(usize, f64)>;
-
-impl Stations {
-    fn of(evaluator: &dyn Evaluator, output: usize) -> Result<Self, CurveError> {
-        let no_curve = CurveError::NoCurve { output };
-        let range = evaluator.outputs().get(output).ok_or(no_curve.clone())?.values.clone();
-        let mut at = if output < evaluator.outputs().len() { evaluator.stations(output) } else { Vec::new() };
-        let mut index: Vec<usize> = range.collect();
-        if at.len() != index.len() || at.len() < 2 {
-            return Err(no_curve);
-        }
-        if at[0] > at[1] {
-            at.reverse();
-            index.reverse();
-        }
-        if !at.windows(2).all(|pair| pair[0] < pair[1]) {
-            return Err(CurveError::Order { output });
-        }
-        let n = at.len();
-        let slopes = (0..n)
-            .map(|i| {
-                let size = STENCIL.min(n);
-                let first = i.saturating_sub(size / 2).min(n - size);
-                derivative(&at[first..first + size], i - first).into_iter().enumerate().map(|(k, w)| (index[first + k], w)).collect()
-            })
-            .collect();
-        Ok(Self { at, index, slopes })
+/// Where the mechanism is when the bench shows a place.
+fn place(shape: &Shape<'_>, bench: &Bench, shown: f64) -> Result<f64, Failure> {
+    let straight = shown - bench.offset[0];
+    if bench.compliance.abs() <= 0.0 {
+        return Ok(straight);
     }
-
-    /// What value and slope at a place are of the values; beyond the ends, straight on.
-    fn weights(&self, x: f64) -> (Weights, Weights) {
-        let last = self.at.len() - 1;
-        let end = if x <= self.at[0] { Some(0) } else { (x >= self.at[last]).then_some(last) };
-        if let Some(end) = end {
-            let mut value: Weights = self.slopes[end].iter().map(|(i, w)| (*i, w * (x - self.at[end]))).collect();
-            value.push((self.index[end], 1.0));
-            return (value, self.slopes[end].clone());
+    let excess = |x: f64| x - straight + bench.compliance * shape.value(x);
+    let mut width = excess(straight).abs().max(f64::EPSILON * straight.abs()).max(f64::MIN_POSITIVE);
+    for _ in 0..60 {
+        if let Ok(x) = roots::root(excess, straight - width, straight + width, 0.0) {
+            return Ok(x);
         }
-        let right = self.at.partition_point(|a| *a <= x).clamp(1, last);
-        let left = right - 1;
-        let h = self.at[right] - self.at[left];
-        let u = (x - self.at[left]) / h;
-        let (mut value, mut slope) = (Vec::new(), Vec::new());
-        let mut add = |index: usize, v: f64, s: f64| {
-            value.push((index, v));
-            slope.push((index, s));
-        };
-        // Hermite's cubics and their derivatives.
-        let (step, bend) = (u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u) / h);
-        add(self.index[left], 1.0 - step, -bend);
-        add(self.index[right], step, bend);
-        for (side, v, s) in
-            [(left, h * u * (1.0 - u) * (1.0 - u), (1.0 - u) * (1.0 - 3.0 * u)), (right, -h * u * u * (1.0 - u), u * (3.0 * u - 2.0))]
-        {
-            self.slopes[side].iter().for_each(|(i, w)| add(*i, v * w, s * w));
-        }
-        (value, slope)
+        width *= 2.0;
     }
-
-    /// A bench that gives way more than the curve pushes back jumps: what it shows is no function of where it is.
-    fn check(&self, compliance: f64, values: &[f64]) -> Result<(), Failure> {
-        let slope = |weights: &Weights| weights.iter().map(|(i, w)| w * values[*i]).sum::<f64>();
-        let least = self.slopes.iter().map(slope).fold(f64::INFINITY, |a, b| a.min(compliance * b));
-        if 1.0 + least > 0.0 { Ok(()) } else { Err(Failure { reason: "a bench this soft snaps through with the mechanism".to_owned() }) }
-    }
-
-    /// Where the mechanism is when the bench shows a place.
-    fn place(&self, bench: &Bench, shown: f64, values: &[f64]) -> Result<f64, Failure> {
-        let straight = shown - bench.offset[0];
-        if bench.compliance.abs() <= 0.0 {
-            return Ok(straight);
-        }
-        let excess = |x: f64| {
-            let (weights, _) = self.weights(x);
-            x - straight + bench.compliance * weights.iter().map(|(i, w)| w * values[*i]).sum::<f64>()
-        };
-        let mut width = excess(straight).abs().max(f64::EPSILON * straight.abs()).max(f64::MIN_POSITIVE);
-        for _ in 0..60 {
-            if let Ok(x) = roots::root(excess, straight - width, straight + width, 0.0) {
-                return Ok(x);
-            }
-            width *= 2.0;
-        }
-        Err(Failure { reason: "the bench takes all of the way itself".to_owned() })
-    }
-}
-
-/// Weights of the derivative, at one of its places, of the polynomial through values at all of them.
-fn derivative(at: &[f64], place: usize) -> Vec<f64> {
-    let n = at.len();
-    let others = |j: usize, without: usize| (0..n).filter(move |k| *k != j && *k != without);
-    (0..n)
-        .map(|j| {
-            if j == place {
-                return (0..n).filter(|k| *k != j).map(|k| 1.0 / (at[j] - at[k])).sum();
-            }
-            let over: f64 = others(j, place).map(|k| at[place] - at[k]).product();
-            over / (0..n).filter(|k| *k != j).map(|k| at[j] - at[k]).product::<f64>()
-        })
-        .collect()
+    Err(Failure { reason: "the bench takes all of the way itself".to_owned() })
 }
 
 #[cfg(test)]
