@@ -34,16 +34,26 @@ pub enum GeneralError {
     Class(String),
     /// The class has none for this length.
     Length(General),
+    /// The quantity is no length.
+    Quantity,
 }
 
 impl fmt::Display for GeneralError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Class(_) => write!(f, "the classes of ISO 2768-1 are f (fine), m (medium), c (coarse) and v (very coarse)"),
+            Self::Class(typed) => {
+                let form = match typed.as_bytes() {
+                    [b'f' | b'm' | b'c' | b'v', b'H' | b'K' | b'L'] => "; a second letter is of ISO 2768-2, form and position",
+                    _ => "",
+                };
+                write!(f, "the classes of ISO 2768-1 are f (fine), m (medium), c (coarse) and v (very coarse){form}")
+            }
             Self::Length(general) => {
                 let [from_m, to_m] = general.lengths_m();
-                write!(f, "`{general}` is given for lengths from {} mm to {} mm", from_m * 1e3, to_m * 1e3)
+                let from = if general.begins_above() { "above" } else { "from" };
+                write!(f, "`{general}` is given for lengths {from} {} mm to {} mm", from_m * 1e3, to_m * 1e3)
             }
+            Self::Quantity => write!(f, "ISO 2768-1 is for lengths"),
         }
     }
 }
@@ -57,9 +67,12 @@ impl fmt::Display for General {
 }
 
 impl General {
-    /// Splits a text at the name of the standard: what is before it, and what stands behind it without its hyphen.
-    pub(crate) fn split(text: &str) -> Option<(&str, &str)> {
-        let (before, behind) = text.split_once("ISO 2768").or_else(|| text.split_once("ISO2768"))?;
+    /// Splits a text at the name of the standard, `ISO 2768` with or without a blank or hyphen, in capitals or not: what is before it, and
+    /// what stands behind it without its hyphen.
+    pub fn split(text: &str) -> Option<(&str, &str)> {
+        let begins = |at: usize| text.get(at..at + 3).is_some_and(|word| word.eq_ignore_ascii_case("iso"));
+        let (before, name) = text.split_at((0..text.len()).find(|at| begins(*at))?);
+        let behind = name[3..].trim_start_matches([' ', '-']).strip_prefix("2768")?;
         // `ISO 2768-1-m` names the part as well.
         let behind = behind.strip_prefix("-1").filter(|rest| rest.starts_with(['-', ' '])).unwrap_or(behind);
         Some((before, behind.trim_start_matches(['-', ' ']).trim_end()))

@@ -554,9 +554,10 @@ impl Quantity {
 
     fn parse_nominal(text: &str, dimension: Dimension) -> Result<Self, QuantityError> {
         let (digits, unit_text) = split_number(text)?;
-        if dimension == Dimension::Length
-            && let Some((unit, class)) = General::split(unit_text)
-        {
+        if let Some((unit, class)) = General::split(unit_text) {
+            if dimension != Dimension::Length {
+                return Err(QuantityError::General(unit_text[unit.len()..].to_owned(), GeneralError::Quantity));
+            }
             let mut quantity = Self::build(digits, unit.trim_end(), dimension)?;
             let found = General::parse(class).and_then(|general| general.half_width_m(quantity.si).map(|_| general));
             let wrong = |why| QuantityError::General(unit_text[unit.len()..].to_owned(), why);

@@ -1,6 +1,7 @@
 //! The reader: a visitor that fills slots from the tree of a project file and reports everything that is wrong with it.
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, MOST_SHOWN, Span};
+use forcewright_base::general::{General, GeneralError};
 use forcewright_base::text::closest;
 use forcewright_base::units::{Dimension, Quantity, QuantityError, Tolerance, Unit, format_number, format_si};
 
@@ -273,12 +274,16 @@ fn quantity_error(error: &QuantityError, text: &str, span: Span, param: &Param) 
         QuantityError::DecimalComma(point) => {
             at("E0202", "decimal comma in a number".to_owned(), "a comma".to_owned()).help(format!("write \"{}\"", shorten(point)))
         }
-        QuantityError::NoUnit => at("E0208", format!("`{shown}` has no unit"), format!("expected {}", dimension.name())).help(format!(
-            "write \"{} {}\" ({})",
-            shown.trim(),
-            default_unit(dimension),
-            dimension.accepted()
-        )),
+        QuantityError::NoUnit => {
+            // The unit belongs to the number, before the name of a tolerance.
+            let (number, rest) = General::split(shown.trim()).map_or((shown.trim(), ""), |(before, _)| shown.trim().split_at(before.len()));
+            let (number, blank) = (number.trim_end(), if rest.is_empty() { "" } else { " " });
+            at("E0208", format!("`{shown}` has no unit"), format!("expected {}", dimension.name())).help(format!(
+                "write \"{number} {}{blank}{rest}\" ({})",
+                default_unit(dimension),
+                dimension.accepted()
+            ))
+        }
         QuantityError::Unit(unit) => at("E0203", unit.to_string(), format!("expected {}", dimension.name())).help(example),
         QuantityError::WrongDimension(unit, found) => at(
             "E0201",
@@ -297,8 +302,12 @@ fn quantity_error(error: &QuantityError, text: &str, span: Span, param: &Param) 
                 .help("write a fit such as `h7` for a shaft, `H7` for a hole, or a half width, \"± 0.02 mm\"")
         }
         QuantityError::General(word, why) => {
-            at("E0209", format!("`{}` is no general tolerance of this length: {why}", shorten(word)), "this tolerance".to_owned())
-                .help("write `ISO 2768-m` behind the length, or a half width, \"± 0.2 mm\"")
+            let what = if *why == GeneralError::Quantity { "of a length" } else { "of this length" };
+            let help = match why {
+                GeneralError::Class(_) => "write `ISO 2768-m` behind the length, or a half width, \"± 0.2 mm\"".to_owned(),
+                _ => format!("write a half width, \"{} ± 2 %\"", dimension.example()),
+            };
+            at("E0209", format!("`{}` is no general tolerance {what}: {why}", shorten(word)), "this tolerance".to_owned()).help(help)
         }
     }
 }

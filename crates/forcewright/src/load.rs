@@ -90,7 +90,8 @@ impl Loaded {
                         .diagnostics
                         .push(Diagnostic::placeless("E0509", "the project was not understood").help("please report this with the file"));
                 }
-                Err(Refused { diagnostics: project.diagnostics, sources: project.sources, file_missing: project.file_missing })
+                let diagnostics = without_design(&project).unwrap_or(project.diagnostics);
+                Err(Refused { diagnostics, sources: project.sources, file_missing: project.file_missing })
             }
         }
     }
@@ -140,6 +141,26 @@ impl Loaded {
             limits: analysis.limits,
         }
     }
+}
+
+/// Where a file without a design asks for one.
+pub(crate) fn asks_for_design(project: &Project) -> Option<Span> {
+    project.tree.get("synthesise").filter(|_| project.tree.get("design").is_none()).map(|entry| entry.key_span)
+}
+
+/// What is wrong with a file that says what a design must do, and has none: what misses there is what a synthesis writes.
+fn without_design(project: &Project) -> Option<Diagnostics> {
+    let asked = asks_for_design(project)?;
+    let mut diagnostics = Diagnostics::default();
+    for other in project.diagnostics.in_file_order().into_iter().filter(|d| d.code != "E0302") {
+        diagnostics.push(other.clone());
+    }
+    diagnostics.push(
+        Diagnostic::error("E0302", asked, "`design` is missing: this file says what a design must do")
+            .label("asks for one")
+            .help("`forcewright synthesise` makes project files that have one, `forcewright check` tells whether it can"),
+    );
+    Some(diagnostics)
 }
 
 /// The family that the project names; reports a missing or unknown one.

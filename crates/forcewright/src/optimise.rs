@@ -27,6 +27,7 @@ use forcewright_study::evaluator::Variable;
 use forcewright_study::optimise::{Progress, Reserve, Run, Search, Settings, again, search};
 use forcewright_study::task::{Limit, Task};
 
+use crate::pareto::whole_lists;
 use crate::sweep::Snapshot;
 use crate::{Loaded, Refused};
 
@@ -476,7 +477,11 @@ impl Loaded {
             values.iter().filter_map(|(path, si)| Some((numbers.iter().position(|n| n.path == *path)?, *si))).collect();
         let original = self.project.sources.iter().next().map_or_else(String::new, |s| s.text.to_string());
         let variant = self.project.choices.variant.as_deref();
-        let set = edit::with_settings(&original, &self.project.choices.set, variant)?;
+        let settings = &self.project.choices.set;
+        let set = edit::with_settings(&original, settings, variant).or_else(|error| {
+            let whole = whole_lists(settings, &self.project.tree).ok_or(error)?;
+            edit::with_settings(&original, &whole, variant)
+        })?;
         let text = edit::with_values(&set, numbers, &changed, variant)?;
         match way(target, Path::new(&self.name())) {
             Some(way) => edit::with_base_from(&text, &way),

@@ -9,6 +9,7 @@ mod pages;
 mod values;
 
 pub use values::Choice;
+pub(crate) use values::whole_lists;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -337,7 +338,12 @@ impl ParetoTask<'_> {
     ) -> Result<Pareto, Refused> {
         // What cannot be written is refused before the work, not after.
         let first: Vec<String> = self.choices.iter().filter_map(|c| c.telling().into_iter().next()).collect();
-        let (written, files) = Snapshot::of(files, |files| self.written(files, &folder.join(self.file(0)), &first));
+        let target = folder.join(self.file(0));
+        let (written, files) = Snapshot::of(files, |files| {
+            // These values may be none of a design, and then nothing is read: what files read, the project as it is does too.
+            let _ = self.project.rewritten(files, &target, &[]);
+            self.written(files, &target, &first)
+        });
         if let Err(refused) = written
             && refused.diagnostics.in_file_order().iter().any(|d| d.code == "E0318")
         {

@@ -16,6 +16,7 @@ use forcewright_contract::tree::{Item, Value};
 use forcewright_model::{Report, StatusKind, StudyTable};
 use rayon::prelude::*;
 
+use crate::load::asks_for_design;
 use crate::optimise::{Beginnings, shortfall, way};
 use crate::{FAMILIES, Loaded, Refused, family};
 use files::{Known, Recorder, aligned};
@@ -215,6 +216,11 @@ impl SynthesisTask {
             sources: loaded.project.sources.clone(),
             diagnostics,
         })
+    }
+
+    /// Whether a file says what a design must do, and has none.
+    pub fn is_asked(files: &dyn Files, path: &Path, set: &[String]) -> bool {
+        asks_for_design(&Project::load(files, path, &Choices { variant: None, set: set.to_vec() })).is_some()
     }
 
     /// The same for a text in memory, which cannot extend other files.

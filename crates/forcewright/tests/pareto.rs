@@ -116,6 +116,34 @@ fn files_are_what_was_found() {
     }
 }
 
+/// A study of another file: files for another folder, also where the first values are no design, and numbers in a list that only the other
+/// file has.
+#[test]
+fn studies_of_another_file() {
+    struct Two(String, String);
+    impl Files for Two {
+        fn read(&self, path: &Path) -> Result<String, FileError> {
+            // As a disk would: `out/../base.toml` is `base.toml`.
+            match path.to_string_lossy().replace("out/../", "").as_str() {
+                "base.toml" => Ok(self.0.clone()),
+                "a.toml" => Ok(self.1.clone()),
+                _ => Err(FileError::NotFound),
+            }
+        }
+    }
+    let vary = "\"design.depth\" = { range = [\"0 mm\", \"12 mm\"] }\n\"design.beams.strip.bend.1\" = { range = [0.1, 0.3] }\n";
+    let base = strip("").replace("straight = true", "bend = [0.2, 0.1]");
+    let files = Two(base, format!("extends = \"base.toml\"\n{}{vary}", STRIP.replace("12", "1").replace("16", "8")));
+    let project = Loaded::from_file(&files, "a.toml".as_ref(), &Choices::default()).map_err(|e| e.render(false)).unwrap();
+    let task = project.pareto_task(&files, (None, None, None)).map_err(|e| e.render(false)).unwrap();
+    let front = task.search(&files, "out".as_ref(), &AtomicBool::new(false), &|_| ()).map_err(|e| e.render(false)).unwrap();
+    let (_, text) = front.designs.iter().find_map(|d| d.file.as_ref()).unwrap();
+    assert!(
+        text.contains("extends = \"../base.toml\"") && text.contains(&format!("bend = [{}, 0.1]", front.designs[0].values[1])),
+        "{text}"
+    );
+}
+
 /// Every design of an example's choices, each as `solve` sees it: settings as typed and goals, of those that meet the requirements.
 fn all_designs(text: &str, axes: &[&str], goals: &[&str]) -> Vec<(Vec<String>, Vec<f64>)> {
     let plan = Plan::new(axes.iter().map(|a| Axis::parse(a).unwrap()).collect(), Sampling::default(), false).unwrap();

@@ -1,14 +1,32 @@
 //! `forcewright check`: reads projects and every variant of them; nothing is solved.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
+use forcewright::base::diagnostics::{Diagnostics, Sources};
 use forcewright::base::text::visible;
-use forcewright::{DiskFiles, Loaded};
+use forcewright::{Choices, DiskFiles, Loaded, Refused, SynthesisTask};
 use serde_json::json;
 
 use super::{choices, diagnostic_json, diagnostics_json, refuse};
 use crate::{exit, output};
+
+/// What was said of a file that is understood.
+struct Read {
+    said: Diagnostics,
+    sources: Sources,
+    variants: Vec<String>,
+}
+
+fn read(file: &Path, choices: &Choices, asks_for_design: bool) -> Result<Read, Refused> {
+    if asks_for_design {
+        let task = SynthesisTask::from_file(&DiskFiles, file, &choices.set)?;
+        let (said, sources) = task.diagnostics();
+        return Ok(Read { said: said.clone(), sources: sources.clone(), variants: Vec::new() });
+    }
+    let project = Loaded::from_file(&DiskFiles, file, choices)?.project;
+    Ok(Read { said: project.diagnostics, sources: project.sources, variants: project.variants })
+}
 
 pub(crate) fn run(matches: &ArgMatches) -> u8 {
     let json = matches.get_flag("json");
@@ -21,7 +39,8 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
         while let Some(choice) = selection.get(index).cloned() {
             index += 1;
             let what = choice.variant.as_ref().map_or_else(|| name.to_string(), |v| format!("{name}, variant {v}"));
-            match Loaded::from_file(&DiskFiles, file, &choice) {
+            let asks = choice.variant.is_none() && SynthesisTask::is_asked(&DiskFiles, file, &choice.set);
+            match read(file, &choice, asks) {
                 Err(refused) => {
                     worst = worst.max(refuse(&refused, false));
                     let list = diagnostics_json(&refused);
@@ -31,20 +50,18 @@ pub(crate) fn run(matches: &ArgMatches) -> u8 {
                         break;
                     }
                 }
-                Ok(loaded) => {
-                    let sources = &loaded.project.sources;
-                    let list: Vec<_> = loaded.project.diagnostics.warnings().into_iter().map(|d| diagnostic_json(d, sources)).collect();
+                Ok(Read { said, sources, variants }) => {
+                    let list: Vec<_> = said.warnings().into_iter().map(|d| diagnostic_json(d, &sources)).collect();
                     if index == 1 {
-                        output::narrate(&loaded.project.diagnostics.render(sources, output::colour_on_stderr()));
+                        output::narrate(&said.render(&sources, output::colour_on_stderr()));
                     }
                     documents.push(json!({ "file": name.to_string(), "variant": choice.variant, "ok": true, "diagnostics": list }));
                     if !json {
-                        output::print(&format!("{}: ok\n", visible(&what)));
+                        let next = if asks { "; it asks for a design: `forcewright synthesise`" } else { "" };
+                        output::print(&format!("{}: ok{next}\n", visible(&what)));
                     }
                     if index == 1 && choice.variant.is_none() {
-                        selection.extend(
-                            loaded.project.variants.iter().map(|v| forcewright::Choices { variant: Some(v.clone()), ..choice.clone() }),
-                        );
+                        selection.extend(variants.iter().map(|v| Choices { variant: Some(v.clone()), ..choice.clone() }));
                     }
                 }
             }

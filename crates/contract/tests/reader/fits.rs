@@ -190,7 +190,13 @@ fn a_setting_with_dotted_keys_is_written_as_it_was_meant() {
 /// Any length takes a general tolerance: `±` of ISO 2768-1, written back as typed.
 #[test]
 fn a_length_takes_a_general_tolerance() {
-    for (typed, half_mm) in [("17.6 mm ISO 2768-m", 0.2), ("17.6 mm ISO 2768-1-f", 0.1), ("1.76 cm ISO2768-c", 0.5)] {
+    for (typed, half_mm) in [
+        ("17.6 mm ISO 2768-m", 0.2),
+        ("17.6 mm ISO 2768-1-f", 0.1),
+        ("1.76 cm ISO2768-c", 0.5),
+        ("17.6 mm iso  2768-m", 0.2),
+        ("17.6 mm ISO-2768-m", 0.2),
+    ] {
         let mut reading = read_text(&text("10 mm", "").replace("thickness = \"1 mm\"", &format!("thickness = \"{typed}\"")));
         assert!(reading.found.is_empty(), "{}", reading.shown);
         let numbers = reading.numbers();
@@ -202,10 +208,10 @@ fn a_length_takes_a_general_tolerance() {
     }
     for (typed, code, why) in [
         ("17.6 mm ISO 2768-q", "E0209", "the classes of ISO 2768-1 are f (fine)"),
-        ("17.6 mm ISO 2768-mK", "E0209", "the classes of ISO 2768-1"),
+        ("17.6 mm ISO 2768-mK", "E0209", "second letter is of ISO 2768-2"),
         ("0.4 mm ISO 2768-m", "E0209", "for lengths from 0.5 mm to 4000 mm"),
-        ("2 mm ISO 2768-v", "E0209", "for lengths from 3 mm to 4000 mm"),
-        ("17.6 ISO 2768-m", "E0208", ""),
+        ("2 mm ISO 2768-v", "E0209", "for lengths above 3 mm to 4000 mm"),
+        ("17.6 ISO 2768-m", "E0208", "write \"17.6 mm ISO 2768-m\""),
     ] {
         let reading = read_text(&text("10 mm", "").replace("thickness = \"1 mm\"", &format!("thickness = \"{typed}\"")));
         let start = format!("{code} a.toml:4:13");

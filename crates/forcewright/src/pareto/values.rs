@@ -253,6 +253,20 @@ fn list_of(among: &Value) -> Result<Values, String> {
     Ok(Values::Among(all))
 }
 
+/// Settings `KEY=VALUE` of a project with each place in a list turned into its whole list, as the project with them has it: lists of an
+/// extended file are changed as a whole. `None` where nothing would differ.
+pub(crate) fn whole_lists(settings: &[String], tree: &Table) -> Option<Vec<String>> {
+    let whole = |setting: &String| {
+        let (list, place) = setting.split_once('=')?.0.trim().rsplit_once('.')?;
+        let place = matches!(place, "x" | "y") || place.parse::<usize>().is_ok();
+        let value =
+            value_at(tree, list).filter(|value| matches!(value, Value::List(items) if items.iter().all(|i| typed(&i.value).is_some())))?;
+        place.then(|| format!("{list}={value}"))
+    };
+    let all: Vec<String> = settings.iter().map(|setting| whole(setting).unwrap_or_else(|| setting.clone())).collect();
+    (all != settings).then_some(all)
+}
+
 /// The value at a path of the project, members of lists by their names or by their places from 1.
 fn value_at<'t>(tree: &'t Table, path: &str) -> Option<&'t Value> {
     let mut parts = path.split('.').map(str::trim);

@@ -22,6 +22,7 @@ pub(crate) fn checks(design: &Design, behaviour: &Behaviour, measured: &Measured
     all.extend(context.force());
     all.extend(context.travel());
     all.extend(context.stress());
+    all.extend(context.stress_moved());
     all.extend(context.stiffness());
     all.extend(context.envelope());
     all.extend(context.layers());
@@ -250,6 +251,42 @@ impl Context<'_> {
                 None => self.unreached(),
             },
             partial: !self.behaviour.whole || unknown.is_some(),
+            broken: false,
+        };
+        Some(comparison.judge())
+    }
+
+    /// COMP002 where the tip is also moved sideways.
+    fn stress_moved(&self) -> Option<Check> {
+        let (design, map) = (self.design, self.behaviour.lateral.as_ref()?);
+        self.requirements.stress?;
+        let worst = map.worst_stress(|beam| design.allowable_pa(beam));
+        let unknown = (0..design.network.beams.len()).any(|beam| design.allowable_pa(beam).is_none());
+        let show = |x: f64| format_si(x, &design.units.displacement, 4);
+        let place = worst.map_or_else(String::new, |([axial_m, lateral_m], beam, ..)| {
+            let beam = design.beam_names.get(beam).map_or("?", String::as_str);
+            format!(" (beam {beam}, Δ = {}, δ = {})", show(axial_m), show(lateral_m))
+        });
+        let comparison = Comparison {
+            code: "COMP002",
+            name: "stress_lateral".to_owned(),
+            title: format!("Largest stress with the tip moved sideways{place}"),
+            required: true,
+            value: worst.map(|(.., stress_pa, _)| stress_pa),
+            limit: worst.and_then(|(_, beam, ..)| design.allowable_pa(beam)),
+            sense: Sense::AtMost,
+            dimension: Dimension::Stress,
+            display: design.units.stress.clone(),
+            scale: None,
+            basis: "what is allowed along the load alone, over all places of the map".to_owned(),
+            fix: "narrow `scenario.lateral`, or make the beams thinner that bend as the tip moves".to_owned(),
+            missing: if worst.is_none() {
+                "the yield stress is not known; give `material.yield_stress`"
+            } else {
+                "the map has gaps; see the status"
+            }
+            .to_owned(),
+            partial: unknown || map.shortfall().is_some(),
             broken: false,
         };
         Some(comparison.judge())

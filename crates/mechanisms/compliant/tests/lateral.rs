@@ -330,6 +330,58 @@ fn what_has_no_map_says_where_and_why() {
     assert!(result.status.message.contains("cannot be moved to δ"), "{}", result.status.message);
 }
 
+/// One leg on its beams alone: a design whose shape at δ = −3 mm depends on how the tip came there. Moved across before it was pushed, it
+/// resists with 3.5 N at Δ = 13 mm; pushed before it was moved across, with 8.0 N (a model by finite elements of its own finds both, and both
+/// stable). Between rows −1.5 mm apart both look smooth; a finer map jumps between −1.4 and −1.3 mm.
+const JUMPS: [&str; 7] = [
+    "design.nodes.n3.at=[\"28.9433 mm\", \"10.3409 mm\"]",
+    "design.nodes.n4.at=[\"14.8651 mm\", \"21.6985 mm\"]",
+    "design.nodes.n5.at.x=\"-6.0902 mm\"",
+    "design.beams.b1.bend.1=-2.11339",
+    "design.beams.b2.bend.1=1.78826",
+    "design.beams.b3.bend.1=-1.74295",
+    "design.beams.b4.bend.1=1.12372",
+];
+const ONE_LEG: &str = include_str!("../../../../docs/book/one-leg.toml");
+
+#[test]
+fn a_map_is_of_one_shape() {
+    let found = map(ONE_LEG, &JUMPS);
+    let complete: Vec<bool> = found.rows.iter().map(|row| row.states.iter().all(Option::is_some)).collect();
+    assert_eq!(complete, [false, false, true, true, true], "{:?}", found.rows.iter().map(|r| r.shortfall).collect::<Vec<_>>());
+    assert!(matches!(found.rows[1].shortfall, Some(Shortfall::Jumps { from_m }) if from_m.abs() < 1e-12));
+    let result = outcome(ONE_LEG, &JUMPS);
+    assert!(result.warnings.iter().any(|w| w.code == "W0524" && w.message.contains("jumps into another shape")), "{:?}", result.warnings);
+    assert!(!result.metrics.iter().any(|m| m.name == "lateral_force_spread"));
+    // As the paper has it, it does not jump.
+    assert!(map(ONE_LEG, &[]).shortfall().is_none());
+}
+
+/// What the part bears along the load alone is no statement about a tip that is moved far aside.
+#[test]
+fn stress_is_checked_where_the_tip_is_moved_sideways() {
+    let stress = |set: &[&str]| {
+        let result = outcome(CORNER, set);
+        let state = |name: &str| result.checks.iter().find(|c| c.name == name).map(|c| (c.state, c.code));
+        let yields = result.warnings.iter().any(|w| w.code == "W0504");
+        (state("stress").unwrap(), state("stress_lateral").unwrap(), yields)
+    };
+    assert_eq!(stress(&[]), ((CheckState::Met, "COMP002"), (CheckState::Met, "COMP002"), false));
+    let far = stress(&["scenario.lateral.travel=[\"-20 mm\", \"20 mm\"]", "scenario.lateral.window=[\"-3 mm\", \"3 mm\"]"]);
+    assert_eq!(far, ((CheckState::Met, "COMP002"), (CheckState::Missed, "COMP002"), true));
+}
+
+/// Levels that agree in four digits are told apart.
+#[test]
+fn near_levels_have_names_of_their_own() {
+    let near = ["scenario.lateral.axial=[\"10 mm\", \"10.001 mm\"]", "scenario.lateral.levels=3", "scenario.lateral.places=3"];
+    let result = outcome(CORNER, &near);
+    let curve = result.curves.iter().find(|c| c.name == "lateral_force").unwrap();
+    let names: Vec<&str> = curve.branches.iter().map(|b| b.name.as_str()).collect();
+    assert_eq!(names, ["Δ = 10 mm", "Δ = 10.0005 mm", "Δ = 10.001 mm"]);
+    assert!(curve.branches[0].x[1].abs() <= 0.0, "the middle is the middle");
+}
+
 #[test]
 fn a_map_can_be_interrupted() {
     let design = design(CORNER, &[]);

@@ -54,10 +54,11 @@ impl Lateral {
     }
 }
 
-/// Equal steps from one value to another, both included.
+/// Equal steps from one value to another, both included. What is zero but for rounding is zero.
 fn steps([from, to]: [f64; 2], count: u32) -> Vec<f64> {
     let last = count.saturating_sub(1).max(1);
-    (0..=last).map(|i| if i == last { to } else { from + (to - from) * f64::from(i) / f64::from(last) }).collect()
+    let step = |i: u32| if i == last { to } else { from + (to - from) * f64::from(i) / f64::from(last) };
+    (0..=last).map(step).map(|x| if x.abs() < SAME * (to - from) { 0.0 } else { x }).collect()
 }
 
 /// What acts on the tip at a place, whole layout. SI.
@@ -71,6 +72,8 @@ pub struct TipState {
     pub rotation_rad: f64,
     /// Largest stress of all beams, Pa.
     pub stress_pa: f64,
+    /// The beam whose stress is nearest to what is allowed in it, or largest where nothing is known of that, and its largest stress, Pa.
+    pub loaded: (usize, f64),
     /// Elastic energy, J.
     pub energy_j: f64,
 }
@@ -92,6 +95,18 @@ pub enum Shortfall {
         /// The last Δ before, m; `None` where it is none of the map.
         reached_m: Option<f64>,
     },
+    /// The tip was moved across in another shape than nearer to the middle: on the way there the mechanism jumps.
+    Jumps {
+        /// The last δ of the shape that the map has, m.
+        from_m: f64,
+    },
+}
+
+impl Shortfall {
+    /// Whether the rest was not computed, on request.
+    fn on_request(self) -> bool {
+        matches!(self, Self::Across(Status::Stopped { .. }) | Self::Along { status: Status::Stopped { .. }, .. })
+    }
 }
 
 /// All Δ at one δ.
@@ -105,6 +120,13 @@ pub struct Row {
     pub states: Vec<Option<TipState>>,
     /// Why not all are there.
     pub shortfall: Option<Shortfall>,
+}
+
+impl Row {
+    /// Its place and its states, if all are there.
+    fn whole(&self) -> Option<(f64, Vec<TipState>)> {
+        Some((self.lateral_m, self.states.iter().copied().collect::<Option<_>>()?))
+    }
 }
 
 /// Forces on the tip over displacements along and across the load.
@@ -121,12 +143,16 @@ pub struct LateralMap {
 /// What is measured on a map, over its window. SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
+    /// Least and largest lateral force, N.
+    pub lateral_n: [f64; 2],
     /// Mean lateral force, N.
     pub lateral_mean_n: f64,
     /// Largest magnitude of the lateral force, N.
     pub lateral_max_n: f64,
     /// (max − min)/|max + min| of the lateral force; `None` where it is as large to one side as to the other.
     pub lateral_spread: Option<f64>,
+    /// Least and largest axial force, N.
+    pub axial_n: [f64; 2],
     /// Mean axial force, N.
     pub axial_mean_n: f64,
     /// (max − min)/|max + min| of the axial force.
@@ -138,6 +164,12 @@ pub struct Summary {
     /// Largest rotation of the tip, rad.
     pub rotation_rad: f64,
 }
+
+/// Rows whose energies differ by what the lateral force does on the way between them, but for this part of what the whole force would do,
+/// are of one shape.
+const LINKED: f64 = 0.02;
+/// How often the way between two rows is halved to see whether they are.
+const HALVINGS: usize = 8;
 
 /// A mean below this part of the largest value is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -170,8 +202,8 @@ fn weights(x: &[f64]) -> Vec<f64> {
 impl LateralMap {
     /// Solves the map of a design: per δ one path, on which the tip is first moved across the load, free along it, and then pushed along it.
     ///
-    /// Mechanisms are elastic: where all states of a region are stable with both displacements held, its forces do not depend on the order
-    /// in which its places are reached.
+    /// Mechanisms are elastic: where the states of a region are stable with both displacements held, and of one sheet, its forces do not
+    /// depend on the order in which its places are reached. Rows of another sheet than that in the middle are dropped.
     ///
     /// # Errors
     /// [`NetworkError`] if the network makes no sense.
@@ -186,12 +218,75 @@ impl LateralMap {
             let counts = *lateral_m >= lateral.window_m[0] - same && *lateral_m <= lateral.window_m[1] + same;
             let (states, shortfall) = Carried { design, lateral_m: *lateral_m }.row(&map.axial_m, &mut part)?;
             map.rows.push(Row { lateral_m: *lateral_m, counts, states, shortfall });
-            if let Some(Shortfall::Across(Status::Stopped { .. }) | Shortfall::Along { status: Status::Stopped { .. }, .. }) = shortfall {
+            if shortfall.is_some_and(Shortfall::on_request) {
                 map.interrupted = true;
                 break;
             }
         }
+        if !map.interrupted {
+            map.end_at_jumps(design, progress)?;
+        }
         Ok(map)
+    }
+
+    /// Drops rows of another shape than that in the middle. Each row is followed from rest along its own way; that neighbours lie on one
+    /// sheet of states shows in their energies.
+    fn end_at_jumps(&mut self, design: &Design, progress: Progress<'_>) -> Result<(), NetworkError> {
+        let middle = (0..self.rows.len()).min_by(|a, b| self.rows[*a].lateral_m.abs().total_cmp(&self.rows[*b].lateral_m.abs()));
+        let Some(middle) = middle else { return Ok(()) };
+        let ways: [Vec<usize>; 2] = [(middle..self.rows.len()).collect(), (0..=middle).rev().collect()];
+        for way in ways {
+            let mut jumped: Option<f64> = None;
+            for pair in way.windows(2) {
+                let (near, far) = (&self.rows[pair[0]], &self.rows[pair[1]]);
+                if jumped.is_none()
+                    && let (Some(from), Some(to)) = (near.whole(), far.whole())
+                {
+                    let Some(linked) = self.linked(design, [&from, &to], HALVINGS, progress)? else {
+                        self.interrupted = true;
+                        return Ok(());
+                    };
+                    jumped = (!linked).then_some(near.lateral_m);
+                }
+                if let Some(from_m) = jumped {
+                    let far = &mut self.rows[pair[1]];
+                    far.states.fill(None);
+                    far.shortfall = far.shortfall.or(Some(Shortfall::Jumps { from_m }));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether two complete rows, a place and its states each, are of one sheet; `None` if that was not found out, on request.
+    fn linked(
+        &self,
+        design: &Design,
+        [from, to]: [&(f64, Vec<TipState>); 2],
+        halvings: usize,
+        progress: Progress<'_>,
+    ) -> Result<Option<bool>, NetworkError> {
+        let way_m = to.0 - from.0;
+        let near = |(a, b): (&TipState, &TipState)| {
+            let left_j = b.energy_j - a.energy_j - 0.5 * way_m * (a.lateral_n + b.lateral_n);
+            let force_n = a.axial_n.hypot(a.lateral_n).max(b.axial_n.hypot(b.lateral_n));
+            left_j.abs() <= LINKED * way_m.abs() * force_n
+        };
+        if from.1.iter().zip(&to.1).all(near) {
+            return Ok(Some(true));
+        }
+        let Some(fewer) = halvings.checked_sub(1) else { return Ok(Some(false)) };
+        let lateral_m = 0.5 * (from.0 + to.0);
+        let (states, shortfall) = Carried { design, lateral_m }.row(&self.axial_m, &mut |_| progress(1.0))?;
+        if shortfall.is_some_and(Shortfall::on_request) {
+            return Ok(None);
+        }
+        let Some(states) = states.into_iter().collect::<Option<Vec<TipState>>>() else { return Ok(Some(false)) };
+        let middle = (lateral_m, states);
+        match self.linked(design, [from, &middle], fewer, progress)? {
+            Some(true) => self.linked(design, [&middle, to], fewer, progress),
+            other => Ok(other),
+        }
     }
 
     /// How many rows the map of a motion has.
@@ -203,6 +298,19 @@ impl LateralMap {
     pub fn shortfall(&self) -> Option<&Row> {
         let fails = |row: &&Row| row.shortfall.is_some();
         self.rows.iter().filter(|row| row.counts).find(fails).or_else(|| self.rows.iter().find(fails))
+    }
+
+    /// The state in which a beam is nearest to what is allowed in it: its place (Δ, δ), m, the beam, its stress, Pa, and that over what
+    /// `allowed` says, Pa. Of all rows, whether metrics look at them or not; `None` where nothing is allowed or known.
+    pub fn worst_stress(&self, allowed: impl Fn(usize) -> Option<f64>) -> Option<([f64; 2], usize, f64, f64)> {
+        let of = |row: &Row, level: usize, state: &TipState| {
+            let (beam, stress_pa) = state.loaded;
+            Some(([*self.axial_m.get(level)?, row.lateral_m], beam, stress_pa, stress_pa / allowed(beam)?))
+        };
+        let states = self.rows.iter().flat_map(|row| row.states.iter().enumerate().map(move |(level, state)| (row, level, state)));
+        let all = states.filter_map(|(row, level, state)| of(row, level, state.as_ref()?));
+        // The first of equals, for the same answer everywhere.
+        all.reduce(|best, next| if next.3 > best.3 { next } else { best })
     }
 
     /// What is measured over the window; `None` where a state of it is missing.
@@ -224,9 +332,11 @@ impl LateralMap {
         let lateral_mean_n = Some(mean(|s| s.lateral_n)).filter(|f| f.abs() > ROUNDING * largest_n).unwrap_or(0.0);
         let at_level = |level: usize| spread(states.iter().filter_map(|row| row.get(level)).map(|s| s.axial_n));
         Some(Summary {
+            lateral_n: extent(all().map(|s| s.lateral_n)),
             lateral_mean_n,
             lateral_max_n: largest_n,
             lateral_spread: spread(all().map(|s| s.lateral_n)),
+            axial_n: extent(all().map(|s| s.axial_n)),
             axial_mean_n: mean(|s| s.axial_n),
             axial_spread: spread(all().map(|s| s.axial_n)),
             axial_coupling: (0..self.axial_m.len()).map(at_level).try_fold(0.0, |most: f64, s| Some(most.max(s?))),
@@ -309,8 +419,19 @@ impl Carried<'_> {
             lateral_n: copies * dot(tip.force_n, across(*direction)),
             rotation_rad: tip.rotation_rad,
             stress_pa: point.peak_stress().map_or(0.0, |(_, s)| s.stress_pa),
+            loaded: self.loaded(point),
             energy_j: copies * point.energy_j,
         }
+    }
+}
+
+impl Carried<'_> {
+    /// The beam that is nearest to what is allowed in it, and its stress.
+    fn loaded(&self, point: &Point) -> (usize, f64) {
+        let stresses = point.beams.iter().map(|beam| beam.peak_stress().stress_pa).enumerate();
+        let part = |(beam, stress): &(usize, f64)| stress / self.design.allowable_pa(*beam).unwrap_or(f64::MAX);
+        // The first of equals, for the same answer everywhere.
+        stresses.reduce(|best, next| if part(&next) > part(&best) { next } else { best }).unwrap_or_default()
     }
 }
 

@@ -10,6 +10,13 @@ use super::{Lateral, LateralMap, Row, Shortfall, TipState};
 use crate::analysis::Behaviour;
 use crate::design::Design;
 
+/// The displacements Δ of a map, with as many digits as tell them apart.
+fn levels(design: &Design, map: &LateralMap) -> Vec<String> {
+    let with = |digits| map.axial_m.iter().map(|x| format_si(*x, &design.units.displacement, digits)).collect::<Vec<_>>();
+    let differ = |names: &Vec<String>| names.windows(2).all(|pair| pair[0] != pair[1]);
+    (4..=15).map(with).find(differ).unwrap_or_else(|| with(17))
+}
+
 /// Lines of a figure: one per Δ, as many as there are strokes.
 const STROKES: [Stroke; 5] = [Stroke::Main, Stroke::Second, Stroke::Third, Stroke::Fourth, Stroke::Reference];
 
@@ -25,12 +32,19 @@ fn force(design: &Design, f_n: f64) -> String {
     format_si(f_n, &design.units.force, 4)
 }
 
-/// `; it varies by ±3 % of its middle over the window and all Δ`.
-fn variation(spread: Option<f64>) -> String {
-    spread.map_or_else(
-        || "; over the window and all Δ it is as large to one side as to the other".to_owned(),
-        |s| format!("; it varies by ±{} of its middle over the window and all Δ", percent(s)),
-    )
+/// `between 3.078 N and 3.395 N, ± 4.9 % of the middle; 3.22 N on average`.
+fn between(design: &Design, [low_n, high_n]: [f64; 2], mean_n: f64, spread: Option<f64>) -> String {
+    let of_middle = spread.map_or_else(
+        || ", as large to one side as to the other".to_owned(),
+        |s| format!(", ±{} about the middle of the two; {} on average", percent(s), force(design, mean_n)),
+    );
+    format!("between {} and {}{of_middle}", force(design, low_n), force(design, high_n))
+}
+
+/// What a figure does not draw.
+fn left_out(map: &LateralMap) -> String {
+    let levels = map.axial_m.len();
+    if levels > STROKES.len() { format!(" {} of {levels} Δ are drawn.", STROKES.len()) } else { String::new() }
 }
 
 fn percent(ratio: f64) -> String {
@@ -59,6 +73,7 @@ fn line(map: &LateralMap, level: usize, value: fn(&TipState) -> f64) -> (Vec<f64
 /// Forces and stress over the lateral displacement, a branch per Δ.
 pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
     let Some((_, map)) = both(design, behaviour) else { return Vec::new() };
+    let names = levels(design, map);
     let stress = Axis {
         name: "lateral_stress",
         label: "Largest stress |σ|".to_owned(),
@@ -66,11 +81,11 @@ pub(crate) fn curves(design: &Design, behaviour: &Behaviour) -> Vec<Curve> {
         display: design.units.stress.clone(),
     };
     let one = |y: Axis, value: fn(&TipState) -> f64| {
-        let branch = |(level, axial_m): (usize, &f64)| {
+        let branch = |(level, name): (usize, &String)| {
             let (x, y) = line(map, level, value);
-            (!x.is_empty()).then(|| Branch { name: format!("Δ = {}", length(design, *axial_m)), x, y })
+            (!x.is_empty()).then(|| Branch { name: format!("Δ = {name}"), x, y })
         };
-        Curve { name: y.name, x: lateral_axis(design), y, branches: map.axial_m.iter().enumerate().filter_map(branch).collect() }
+        Curve { name: y.name, x: lateral_axis(design), y, branches: names.iter().enumerate().filter_map(branch).collect() }
     };
     let all = vec![
         one(force_axis(design, "lateral_force", "Lateral force F_l"), |s| s.lateral_n),
@@ -90,29 +105,23 @@ pub(crate) fn figures(design: &Design, behaviour: &Behaviour) -> Vec<Figure> {
     let lateral_caption = summary.map_or_else(
         || map.shortfall().map_or_else(String::new, |row| format!("{}.", ending(design, map, row))),
         |s| {
-            format!(
-                "Force that holds the tip sideways, {} on average over the window and at most {}{}. Positive along positive δ.",
-                force(design, s.lateral_mean_n),
-                force(design, s.lateral_max_n),
-                variation(s.lateral_spread)
-            )
+            let forces = between(design, s.lateral_n, s.lateral_mean_n, s.lateral_spread);
+            format!("Force that holds the tip sideways, positive along positive δ: over the window and all Δ {forces}.{}", left_out(map))
         },
     );
     let axial_caption = summary.map_or_else(String::new, |s| {
-        format!(
-            "Force along the load, {} on average over the window{}{}.",
-            force(design, s.axial_mean_n),
-            variation(s.axial_spread),
-            s.axial_coupling
-                .map_or_else(String::new, |c| format!(", and by ±{} at most while the tip moves sideways at one Δ", percent(c)))
-        )
+        let forces = between(design, s.axial_n, s.axial_mean_n, s.axial_spread);
+        let coupling = s
+            .axial_coupling
+            .map_or_else(String::new, |c| format!(" While the tip moves sideways at one Δ, it changes by ±{} at most.", percent(c)));
+        format!("Force along the load: over the window and all Δ {forces}.{coupling}{}", left_out(map))
     });
     let band = design.requirements.as_ref().and_then(|r| r.force).and_then(|(band, level)| Some((band, level?)));
     let required = band.map(|(band, level)| HorizontalBand {
         from: level * (1.0 - band),
         to: level * (1.0 + band),
         extent: None,
-        label: format!("{} ± {} (required)", force(design, level), percent(band)),
+        label: format!("{} ± {} (required at δ = 0)", force(design, level), percent(band)),
     });
     vec![
         Figure {
@@ -155,10 +164,10 @@ fn plot(
     required: Option<HorizontalBand>,
     value: fn(&TipState) -> f64,
 ) -> Plot {
+    let names = levels(design, map);
     let one = |(level, stroke): (usize, Stroke)| {
         let (x, y) = line(map, level, value);
-        let axial_m = map.axial_m.get(level).copied().unwrap_or(f64::NAN);
-        (!x.is_empty()).then(|| Series { label: format!("Δ = {}", length(design, axial_m)), x, y, stroke })
+        (!x.is_empty()).then(|| Series { label: format!("Δ = {}", names[level]), x, y, stroke })
     };
     let forces = || map.rows.iter().flat_map(|row| &row.states).flatten().map(value);
     let (least, most) = (forces().fold(f64::INFINITY, f64::min), forces().fold(f64::NEG_INFINITY, f64::max));
@@ -187,7 +196,7 @@ pub(crate) fn model(design: &Design) -> Option<Statement> {
     Some(Statement {
         title: "Lateral motion".to_owned(),
         text: format!(
-            "The guide of the tip, along the load, is moved across it by δ from {from} to {to}; δ counts along the load's direction turned by 90° counter-clockwise. At each of {rows} δ the path is solved on which the tip is first moved across the load, free along it, and then pushed along it; states are kept at {} displacements Δ from {low} to {high}, counted from rest. F_a and F_l are the forces that hold the tip there, both those of the whole layout. An elastic mechanism whose states are all stable with both displacements held has the same forces in whatever order its places are reached. Metrics are over the places of the map, without interpolation.",
+            "The guide of the tip, along the load, is moved across it by δ from {from} to {to}; δ counts along the load's direction turned by 90° counter-clockwise. At each of {rows} δ the path is solved on which the tip is first moved across the load, free along it, and then pushed along it; states are kept at {} displacements Δ from {low} to {high}, counted from rest. F_a and F_l are the forces that hold the tip there, both those of the whole layout. An elastic mechanism whose states are all stable with both displacements held, and which does not jump between them, has the same forces in whatever order its places are reached; that it does not jump shows in its energy, which the lateral force must add up to. Metrics are over the places of the map, without interpolation.",
             lateral.levels
         ),
     })
@@ -218,6 +227,12 @@ fn ending(design: &Design, map: &LateralMap, row: &Row) -> String {
         Some(Shortfall::Branches { reached_m }) => {
             format!("at δ = {at} the tip is not pushed {}: the path branches, and a real part leaves the computed shape", far(reached_m))
         }
+        Some(Shortfall::Jumps { from_m }) => {
+            let from = length(design, from_m);
+            format!(
+                "between δ = {from} and {at} the mechanism jumps into another shape; which one a real part has depends on how it came there"
+            )
+        }
         None => format!("the map ends at δ = {at}"),
     }
 }
@@ -246,7 +261,14 @@ pub(crate) fn status(design: &Design, behaviour: &Behaviour) -> Option<String> {
 pub(crate) fn warnings(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
     let Some((_, map)) = both(design, behaviour) else { return Vec::new() };
     let message = |row| format!("{}; narrow `scenario.lateral`, or change the shape", ending(design, map, row));
-    map.shortfall().map(|row| Warning { code: "W0524", message: message(row) }).into_iter().collect()
+    let gap = map.shortfall().map(|row| Warning { code: "W0524", message: message(row) });
+    let yields = map.worst_stress(|beam| design.yield_pa(beam)).filter(|(.., part)| *part > 1.0).map(|([axial_m, lateral_m], beam, ..)| {
+        let beam = design.beam_names.get(beam).map_or("?", String::as_str);
+        let [axial, lateral] = [axial_m, lateral_m].map(|x| length(design, x));
+        let what = "exceeds its yield stress with the tip moved sideways";
+        Warning { code: "W0504", message: format!("the stress in beam `{beam}` {what}, at Δ = {axial} and δ = {lateral}") }
+    });
+    gap.into_iter().chain(yields).collect()
 }
 
 /// Whether a metric belongs to a lateral motion.
