@@ -1,7 +1,7 @@
 //! Figures of a tolerance study.
 
-use forcewright_base::units::{Dimension, Unit, format_si};
-use forcewright_model::{Axis, Figure, FigureContent, HorizontalBand, Marker, Plot, Series, Stroke};
+use forcewright_base::units::{Dimension, format_si};
+use forcewright_model::{Axis, BarRow, Bars, Figure, FigureContent, HorizontalBand, Plot, Series, Stroke};
 
 use super::Toleranced;
 
@@ -62,50 +62,24 @@ impl Toleranced {
         if bars.is_empty() {
             return None;
         }
-        let rank = |i: usize| (bars.len() - i) as f64;
-        let mut markers = Vec::new();
-        let sides = [("lower end", Stroke::Second), ("upper end", Stroke::Main)].into_iter().enumerate();
-        let series = sides.map(|(side, (label, stroke))| {
-            // A comb: along the nominal value, out to each end and back.
-            let (mut x, mut y) = (Vec::new(), Vec::new());
-            for (i, bar) in bars.iter().enumerate() {
-                let end = bar.values.get(place).and_then(|v| v[side]).unwrap_or(nominal);
-                x.extend([nominal, end, nominal]);
-                y.extend([rank(i); 3]);
-            }
-            Series { label: label.to_owned(), x, y, stroke }
-        });
-        let series: Vec<Series> = series.collect();
-        for (i, bar) in bars.iter().enumerate() {
+        let rows = bars.iter().filter_map(|bar| {
             let variable = study.variables.get(bar.variable)?;
             let unit = self.units.get(bar.variable)?;
-            let [low, high] = bar.ends.map(|end| format_si(end, unit, 5));
-            let at = bar.values.get(place).and_then(|v| v[1]).unwrap_or(nominal);
-            let label = (i + 1).to_string();
-            markers.push(Marker { x: at, y: rank(i), note: format!("{label}: {} from {low} to {high}", variable.path), label });
-        }
+            let [low, high] = bar.ends.map(|end| format_si(end, unit, 4));
+            let to = |side: usize| bar.values.get(place).and_then(|v| v[side]).map_or(f64::NAN, |value| value - nominal);
+            Some(BarRow { label: format!("{}, {low} … {high}", variable.path), ends: vec![[to(0), to(1)]] })
+        });
         let unit = self.unit_of(measure);
         let dimension = unit.dimension().unwrap_or(Dimension::Ratio);
-        let plot = Plot {
-            x: Axis { name: "measure", label: name.clone(), dimension, display: unit },
-            y: Axis {
-                name: "rank",
-                label: "Place from below".to_owned(),
-                dimension: Dimension::Ratio,
-                display: Unit::si(Dimension::Ratio),
-            },
-            series,
-            bands: Vec::new(),
-            levels: Vec::new(),
-            spans: Vec::new(),
-            markers,
-            from_zero: true,
-        };
+        let at = format_si(nominal, &unit, 4);
+        let axis = Axis { name: "measure", label: format!("Change of {name} from {at}"), dimension, display: unit };
+        let series = vec![("lower end of the tolerance outlined, upper end filled".to_owned(), Stroke::Main)];
+        let rows: Vec<BarRow> = rows.collect();
         Some(Figure {
             id,
             title: format!("What each parameter does to {name}"),
-            caption: "Bars from the nominal design to the ends of one tolerance, all others nominal; the longest at the top.".to_owned(),
-            content: FigureContent::Plot(plot),
+            caption: "What one parameter at the ends of its tolerance changes, all others nominal; the longest bar at the top.".to_owned(),
+            content: FigureContent::Bars(Bars { axis, series, rows }),
         })
     }
 }

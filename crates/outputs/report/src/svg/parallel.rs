@@ -55,7 +55,11 @@ pub(crate) fn draw(parallel: &Parallel, size: PlotSize) -> Drawing {
         let last = head.len() - 1;
         for (i, line) in head.iter().enumerate() {
             let y = top - 12.0 - ROW * (last - i) as f64;
-            canvas.text(line, [axis.x, y], Anchor::Middle, if i == last { UNIT } else { NAME });
+            let style = if i == last { UNIT } else { NAME };
+            // Beside the outer axes there is less room than between two.
+            let half = 0.5 * style.width(line);
+            let x = axis.x.min(width - 2.0 - half).max(2.0 + half);
+            canvas.text(line, [x, y], Anchor::Middle, style);
         }
     }
     // What matters most lies on top.
