@@ -277,7 +277,11 @@ fn sweep() -> Command {
                 .required(true)
                 .action(ArgAction::Append),
         )
-        .arg(out("Write OUT.csv and OUT.json; a folder gets sweep.csv and sweep.json").value_name("PATH").value_hint(ValueHint::AnyPath))
+        .arg(
+            out("Write PATH and its JSON if it ends in .csv or .npy; else PATH is a folder, for sweep.csv and sweep.json")
+                .value_name("PATH")
+                .value_hint(ValueHint::AnyPath),
+        )
         .arg(
             option("metrics", "NAMES", "Only these metrics, in this order, such as force_at_end,stress_max")
                 .value_delimiter(',')

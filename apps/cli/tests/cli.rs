@@ -167,6 +167,29 @@ fn check_reads_every_variant_of_every_file_and_solves_nothing() {
     assert_eq!(run(folder.path(), &["check"]).code, Some(2));
 }
 
+/// A file that says what a design must do is checked as that, and other commands say what to do with it. What misses in a file that is not
+/// TOML may stand behind the slip, and is not told.
+#[test]
+fn what_a_file_lacks_is_said_once() {
+    let folder = folder();
+    let asked = "schema = 1\nmechanism = \"compliant\"\n[requirements]\nforce = { nominal = \"12 N\", band = \"5 %\" }\ntravel = \"8 mm\"\n\
+                 stress = { safety_factor = 1.5 }\n[material]\nuse = \"POM-C\"\n[process]\nmethod = \"milling\"\ncutter_diameter = \"1 mm\"\n\
+                 [synthesise]\nroom = [\"140 mm\", \"110 mm\"]\nthickness_min = \"0.6 mm\"\ndepth = { max = \"20 mm\" }\n";
+    std::fs::write(folder.path().join("b.toml"), asked).unwrap();
+    std::fs::write(folder.path().join("c.toml"), asked.replace("140 mm", "140 cats")).unwrap();
+    std::fs::write(folder.path().join("d.toml"), asked.replace("\"POM-C\"", "\"POM-C")).unwrap();
+    let check = run(folder.path(), &["check", "b.toml"]);
+    assert!(check.code == Some(0) && check.stdout.contains("b.toml: ok; it asks for a design"), "{} {}", check.stdout, check.stderr);
+    let errors = |arguments: &[&str]| {
+        let run = run(folder.path(), arguments);
+        assert_eq!(run.code, Some(2), "{}", run.stderr);
+        run.stderr.lines().filter(|line| line.starts_with("error")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert!(matches!(&errors(&["solve", "b.toml"])[..], [only] if only.contains("`design` is missing: this file says what")));
+    assert!(matches!(&errors(&["check", "c.toml"])[..], [only] if only.starts_with("error[E02") && only.contains("cats")));
+    assert!(errors(&["check", "d.toml"]).iter().all(|line| line.starts_with("error[E0105]")));
+}
+
 #[test]
 fn values_are_shown_in_the_units_typed() {
     let shown = |travel: &str| solve(&["--set", &format!("load.travel={travel}"), "--set", "requirements.force.nominal=0.0097 kN"]).stdout;

@@ -63,6 +63,16 @@ pub fn xml(text: &str) -> String {
     out
 }
 
+/// A number of things: `1 design`, `2 designs`; for nouns whose plural ends in `s`.
+///
+/// ```
+/// assert_eq!([1_u32, 2].map(|n| forcewright_base::text::counted(n, "design")), ["1 design", "2 designs"]);
+/// ```
+pub fn counted(number: impl Into<u64>, noun: &str) -> String {
+    let number = number.into();
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

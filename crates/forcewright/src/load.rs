@@ -90,7 +90,7 @@ impl Loaded {
                         .diagnostics
                         .push(Diagnostic::placeless("E0509", "the project was not understood").help("please report this with the file"));
                 }
-                let diagnostics = without_design(&project).unwrap_or(project.diagnostics);
+                let diagnostics = not_toml(&project).or_else(|| without_design(&project)).unwrap_or(project.diagnostics);
                 Err(Refused { diagnostics, sources: project.sources, file_missing: project.file_missing })
             }
         }
@@ -143,6 +143,19 @@ impl Loaded {
     }
 }
 
+/// What is wrong with a file that is not TOML: what misses there may stand behind the slip.
+fn not_toml(project: &Project) -> Option<Diagnostics> {
+    let all = project.diagnostics.in_file_order();
+    all.iter().any(|d| d.code == "E0105").then(|| others(&all, "E0302"))
+}
+
+/// All but those of a code.
+fn others(all: &[&Diagnostic], code: &str) -> Diagnostics {
+    let mut diagnostics = Diagnostics::default();
+    all.iter().filter(|d| d.code != code).for_each(|d| diagnostics.push((*d).clone()));
+    diagnostics
+}
+
 /// Where a file without a design asks for one.
 pub(crate) fn asks_for_design(project: &Project) -> Option<Span> {
     project.tree.get("synthesise").filter(|_| project.tree.get("design").is_none()).map(|entry| entry.key_span)
@@ -151,10 +164,7 @@ pub(crate) fn asks_for_design(project: &Project) -> Option<Span> {
 /// What is wrong with a file that says what a design must do, and has none: what misses there is what a synthesis writes.
 fn without_design(project: &Project) -> Option<Diagnostics> {
     let asked = asks_for_design(project)?;
-    let mut diagnostics = Diagnostics::default();
-    for other in project.diagnostics.in_file_order().into_iter().filter(|d| d.code != "E0302") {
-        diagnostics.push(other.clone());
-    }
+    let mut diagnostics = others(&project.diagnostics.in_file_order(), "E0302");
     diagnostics.push(
         Diagnostic::error("E0302", asked, "`design` is missing: this file says what a design must do")
             .label("asks for one")

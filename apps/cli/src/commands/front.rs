@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
-use forcewright::base::text::visible;
+use forcewright::base::text::{counted, visible};
 use forcewright::model::{CheckState, StatusKind};
 use forcewright::sweep::Axis;
 use forcewright::{DiskFiles, Front, Loaded};
@@ -71,7 +71,8 @@ fn finish(found: &Front, matches: &ArgMatches, file: &Path, folder: &Path) -> u8
             // The document, if one was asked for, is printed already.
             return output::write_failed(&failed, false);
         }
-        let text = format!("wrote {written} project files, front.csv, report.html, result.json in {}", folder.display());
+        let text =
+            format!("wrote {}, front.csv, report.html, result.json in {}", counted(written as u64, "project file"), folder.display());
         output::narrate(&format!("{}\n", visible(&text)));
     }
     let complete = |p: &forcewright::FrontPoint| p.found.after.as_ref().is_some_and(|r| r.outcome.status.kind == StatusKind::Complete);

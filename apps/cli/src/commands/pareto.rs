@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use clap::ArgMatches;
-use forcewright::base::text::visible;
+use forcewright::base::text::{counted, visible};
 use forcewright::{DiskFiles, Loaded, Pareto, ParetoProgress};
 use indicatif::ProgressBar;
 
@@ -76,7 +76,11 @@ fn finish(found: &Pareto, matches: &ArgMatches, file: &Path, folder: &Path) -> u
             return output::write_failed(&failed, false);
         }
         let state = if found.met() { "" } else { "; the design does not keep every limit" };
-        let text = format!("wrote {written} project files, front.csv, report.html, result.json in {}{state}", folder.display());
+        let text = format!(
+            "wrote {}, front.csv, report.html, result.json in {}{state}",
+            counted(written as u64, "project file"),
+            folder.display()
+        );
         output::narrate(&format!("{}\n", visible(&text)));
     }
     match (found.interrupted(), found.designs.is_empty(), found.met()) {

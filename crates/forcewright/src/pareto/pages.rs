@@ -1,6 +1,6 @@
 //! A trade-off for people: words, a table and the page.
 
-use forcewright_base::text::visible;
+use forcewright_base::text::{counted, visible};
 use forcewright_base::units::{format_number, format_si};
 use forcewright_model::{Axis, CheckState, Figure, FigureContent, Statement, StudyColumn, StudyTable};
 use forcewright_report::study::{Pick, Picks, Scatter, ScatterPoint, StudyColumn as PageColumn, StudyPage, StudyPart, StudySection, page};
@@ -58,7 +58,11 @@ impl Pareto {
             ));
         }
         if self.search.failed > 0 {
-            let reasons = self.search.reasons.iter().take(MOST_REASONS).map(|(reason, count)| format!("{count}: {}", visible(reason)));
+            // As a status it stands before a place.
+            let whole =
+                |reason: &str| if reason.ends_with("beyond") { format!("{reason} a place before the end") } else { reason.to_owned() };
+            let reasons = self.search.reasons.iter().take(MOST_REASONS);
+            let reasons = reasons.map(|(reason, count)| format!("{count}: {}", visible(&whole(reason))));
             all.push(say(
                 "No values",
                 format!("{} of the designs have none. {}.", self.search.failed, reasons.collect::<Vec<_>>().join("; ")),
@@ -103,9 +107,9 @@ impl Pareto {
         };
         let s = &self.search;
         format!(
-            "{} designs in {} generations of {}, {} of them within the limits; it ended {end}. A search of this kind promises no optimum: more generations and another seed show what is left.",
-            s.evaluations,
-            s.history.len(),
+            "{} in {} of {}, {} of them within the limits; it ended {end}. A search of this kind promises no optimum: more generations and another seed show what is left.",
+            counted(s.evaluations, "design"),
+            counted(s.history.len() as u64, "generation"),
             self.asked.population,
             s.feasible
         )
