@@ -114,7 +114,14 @@ impl Table {
     /// Lays another table over this one: tables merge key by key, lists of named tables merge name by name, others by place, everything else is
     /// replaced. The other wins. A single entry of a list is reached by its place, counted from 1, or by `x` and `y` in a pair:
     /// `bend.2`, `at.x`. Returned is what names a place that its list does not have; the list is left as it was.
+    ///
+    /// A goal to `minimise` takes the place of one to `maximise`, and the other way round.
     pub fn overlay(&mut self, other: Self) -> Diagnostics {
+        if let Some(turned) = other.entries.iter().find_map(|e| opposite(&e.key).filter(|_| matches!(e.item.value, Value::Text(_))))
+            && other.get(turned).is_none()
+        {
+            self.entries.retain(|e| e.key != turned || !matches!(e.item.value, Value::Text(_)));
+        }
         // Searched by an index: files of a hundred thousand keys are hostile, but must not take for ever.
         let places: BTreeMap<String, usize> = self.entries.iter().enumerate().map(|(at, e)| (e.key.clone(), at)).collect();
         let mut astray = Diagnostics::default();
@@ -125,6 +132,15 @@ impl Table {
             }
         }
         astray
+    }
+}
+
+/// What a goal excludes.
+pub(crate) fn opposite(key: &str) -> Option<&'static str> {
+    match key {
+        "minimise" => Some("maximise"),
+        "maximise" => Some("minimise"),
+        _ => None,
     }
 }
 

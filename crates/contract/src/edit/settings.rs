@@ -4,6 +4,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
 use super::{EditError, member, put};
 use crate::data::names_a_file;
+use crate::tree::opposite;
 
 /// The text with settings `KEY=VALUE` of the command line written into it, so that it stands without them. A `variant` that says
 /// otherwise is changed as well.
@@ -120,6 +121,9 @@ fn set(table: &mut dyn TableLike, parts: &[&str], new: &New, create: bool) -> Re
     if rest.is_empty() || (inside && lists) {
         if !create && !table.contains_key(key) {
             return Ok(());
+        }
+        if let Some(turned) = opposite(key).filter(|turned| new.value.is_str() && table.get(turned).is_some_and(Item::is_str)) {
+            table.remove(turned);
         }
         return replace(table, key, place_in_list(rest), new).ok_or_else(in_the_way);
     }

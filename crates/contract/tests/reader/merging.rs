@@ -1,5 +1,8 @@
 //! Merging: what a file extends, its variants, and the settings of the command line.
 
+use forcewright_contract::describe::Slot;
+use forcewright_contract::edit::with_settings;
+
 use crate::toy::{Reading, read_files, read_text};
 
 const BASE: &str = r#"schema = 1
@@ -57,6 +60,31 @@ fn the_child_wins_key_by_key() {
             "design.beams.b2.straight = true",
         ]
     );
+}
+
+/// A goal turns round, in a file that extends another and on the command line, in what is read and in what is written; lists of goals stay
+/// beside each other.
+#[test]
+fn a_goal_takes_the_place_of_its_opposite() {
+    let study = "[optimise]\nobjective = { maximise = \"flat_ratio\" }\n[optimise.variables]\n\"design.thickness\" = { range = [\"0.5 mm\", \"2 mm\"] }\n";
+    let base = format!("{BASE}{study}");
+    let goals = |child: &str, set: &[&str]| {
+        let child = format!("extends = \"base.toml\"\n{child}");
+        let reading = read_files(&[("a.toml", &child), ("base.toml", &base)], None, set);
+        assert!(reading.found.is_empty(), "{}", reading.shown);
+        let objective = &reading.toy.studies.optimise.objective;
+        let text = |slot: &Slot<String>| slot.as_ref().map(|s| s.value.clone());
+        [text(&objective.minimise), text(&objective.maximise)]
+    };
+    let turned = [Some("mass".to_owned()), None];
+    assert_eq!(goals("[optimise]\nobjective = { minimise = \"mass\" }\n", &[]), turned);
+    assert_eq!(goals("", &["optimise.objective={minimise=\"mass\"}"]), turned);
+    assert_eq!(goals("", &["optimise.objective.minimise=mass"]), turned);
+    let written = with_settings(study, &["optimise.objective={minimise=\"mass\"}".to_owned()], None).unwrap();
+    assert!(written.contains("minimise = \"mass\"") && !written.contains("maximise"), "{written}");
+    let pareto = "[pareto]\nminimise = [\"mass\"]\n";
+    let both = with_settings(pareto, &["pareto.maximise=[\"flat_ratio\"]".to_owned()], None).unwrap();
+    assert!(both.contains("minimise = [\"mass\"]") && both.contains("maximise"), "{both}");
 }
 
 #[test]
