@@ -1,5 +1,6 @@
 //! Figures of a calibration.
 
+use forcewright_base::maths::hypot;
 use forcewright_model::{Figure, FigureContent, HorizontalBand, HorizontalLine, Plot, Series, Stroke, VerticalSpan};
 
 use forcewright_study::calibrate::{Branch, Curve, Model};
@@ -123,7 +124,7 @@ impl Calibrated {
         let t = self.fit.quantile(self.confidence);
         let errors: Vec<[f64; 2]> = order.iter().map(|i| [self.points.x[*i], self.fit.curve_error[*i]]).collect();
         let noise = self.fit.noise;
-        let wide = |x: f64| t * noise.hypot(between(&errors, x));
+        let wide = |x: f64| t * hypot(noise, between(&errors, x));
         let middle = || line.x.iter().zip(&line.after);
         let upper = middle().map(|(x, y)| (*x, y + wide(*x)));
         let lower = middle().rev().map(|(x, y)| (*x, y - wide(*x)));

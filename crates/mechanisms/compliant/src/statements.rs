@@ -298,19 +298,18 @@ fn leaving(design: &Design, behaviour: &Behaviour) -> Vec<Warning> {
     all
 }
 
+/// Copies that run into each other.
+fn touching_copies(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Option<Warning> {
+    let beside = measured.nearest.filter(|n| n.clearance.image.is_some()).map(|n| n.clearance.distance_m);
+    let gap_m = [beside, gap_around_m(design, behaviour)].into_iter().flatten().reduce(f64::min).filter(|m| *m < 0.0)?;
+    let by = format_si(-gap_m, &design.units.length, 4);
+    let message = format!("copies run into each other by {by}: contact is not modelled, so the results hold only if they are moved apart");
+    Some(Warning { code: "W0515", message })
+}
+
 /// Things to know about this result.
 pub(crate) fn warnings(design: &Design, behaviour: &Behaviour, measured: &Measured) -> Vec<Warning> {
-    let mut all = Vec::new();
-    let beside = measured.nearest.filter(|n| n.clearance.image.is_some()).map(|n| n.clearance.distance_m);
-    if let Some(gap_m) = [beside, gap_around_m(design, behaviour)].into_iter().flatten().reduce(f64::min).filter(|m| *m < 0.0) {
-        all.push(Warning {
-            code: "W0515",
-            message: format!(
-                "copies run into each other by {}: contact is not modelled, so the results hold only if they are moved apart",
-                format_si(-gap_m, &design.units.length, 4)
-            ),
-        });
-    }
+    let mut all: Vec<Warning> = touching_copies(design, behaviour, measured).into_iter().collect();
     let name = |i: usize| design.beam_names.get(i).map_or("?", String::as_str);
     for (index, beam) in design.network.beams.iter().enumerate() {
         let slenderness = slenderness(beam);

@@ -3,6 +3,7 @@
 mod results;
 
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics, Span};
+use forcewright_base::maths::hypot;
 use forcewright_base::units::{Quantity, format_si};
 use forcewright_beam::{Drive, Network, NetworkError, Path, Point, Rotation, Stage, Status, Support, trace};
 use forcewright_contract::describe::{Located, Slot};
@@ -269,7 +270,7 @@ impl LateralMap {
         let way_m = to.0 - from.0;
         let near = |(a, b): (&TipState, &TipState)| {
             let left_j = b.energy_j - a.energy_j - 0.5 * way_m * (a.lateral_n + b.lateral_n);
-            let force_n = a.axial_n.hypot(a.lateral_n).max(b.axial_n.hypot(b.lateral_n));
+            let force_n = hypot(a.axial_n, a.lateral_n).max(hypot(b.axial_n, b.lateral_n));
             left_j.abs() <= LINKED * way_m.abs() * force_n
         };
         if from.1.iter().zip(&to.1).all(near) {
