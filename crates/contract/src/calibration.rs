@@ -36,12 +36,12 @@ pub const CODES: &[Explanation] = &[
     Explanation {
         code: "E0904",
         title: "too few measured points",
-        text: "Points count that lie where the design's curve is computed, on the branch that was asked for; there must be at least two more than parameters. Curves are computed from rest to `load.travel` (compliant), over `window` (cam), up to `requirements.torque` or `requirements.input_torque` (cable drive, transmission): measured in these units, and with the zero of the bench taken off by `offset`.",
+        text: "Points count that lie where the design's curve is computed, on the branch that was asked for; there must be at least two more than parameters. Rows that repeat the one before them exactly, or a table that repeats as a whole, are one measurement.\n\nWhat is compared: the force over the travel of the load, from rest to `load.travel` (compliant); the force, or of a torque cam the torque, up and down over the travel in `window` (cam); the tangent stiffness over the torque, up to `requirements.torque` (cable drive); the output over the input torque, up to `requirements.input_torque` (transmission): measured in units of these quantities, and with the zero of the bench taken off by `offset`.",
     },
     Explanation {
         code: "E0905",
         title: "no such filter",
-        text: "A filter is Butterworth's low-pass, run forwards and backwards over the rows in the order of the file, which were taken at even times: an order from 1 to 8 and a cut-off below half the rate of the rows.\n\n    filter = { order = 4, cut_off = \"5 Hz\", rate = \"35 Hz\" }\n\nIt takes half of the amplitude at the cut-off. Scatter and lack of fit are judged by the unfiltered rows.",
+        text: "A filter is Butterworth's low-pass, run forwards and backwards over the rows in the order of the file, which were taken at even times: an order from 1 to 8 and a cut-off below half the rate of the rows.\n\n    filter = { order = 4, cut_off = \"5 Hz\", rate = \"35 Hz\" }\n\nIt takes half of the amplitude at the cut-off. A record has at least some periods of it (three, and more for orders above 4): what is slower moves the ends of the record, or all of it. Scatter and lack of fit are judged by the unfiltered rows.",
     },
     Explanation {
         code: "E0906",
@@ -51,7 +51,12 @@ pub const CODES: &[Explanation] = &[
     Explanation {
         code: "E0908",
         title: "no curve to compare with",
-        text: "The family's studies have no curve over places for this design, or its analysis shows no curve of the same quantity, so that nothing could be measured against it. `forcewright solve` says what is missing.",
+        text: "The family's studies have no curve over places for this design, or its analysis shows no curve of the same quantity, so that nothing could be measured against it. `forcewright solve` says what is missing.\n\nA measured curve is the force over the travel of the load (compliant), the force or the torque up and down over the travel (cam), the tangent stiffness over the torque (cable drive: not the turn of its output, nor a secant stiffness), or the output over the input torque (transmission).",
+    },
+    Explanation {
+        code: "E0912",
+        title: "decimal commas",
+        text: "Numbers of the measured table have decimal commas, as programs write them that are set to many languages of Europe. Say so beside `file`; columns are then separated by semicolons:\n\n    [measurements.curve]\n    file = \"curve.csv\"\n    decimal = \"comma\"\n    x = \"travel / mm\"\n    y = \"force / N\"",
     },
     Explanation {
         code: "E0910",

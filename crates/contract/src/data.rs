@@ -4,6 +4,7 @@
 //! force / N`, and numbers with a decimal point follow. Columns are separated by commas, or by semicolons where the header has one. They
 //! stand in a fixed order ([`rows`]), or are found by names that the project gives ([`named_rows`]).
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
@@ -74,6 +75,72 @@ fn cells(line: &str, base: Span, separator: char) -> Vec<(Span, &str)> {
     parts.collect()
 }
 
+/// As many errors of one code are told of one file; how many more there are is said with the next.
+const MOST_ALIKE: usize = 5;
+
+/// Reports errors of a file, of each code the first few.
+pub(crate) fn report_few(errors: Vec<Diagnostic>, diagnostics: &mut Diagnostics) {
+    let mut counts: BTreeMap<&'static str, usize> = BTreeMap::new();
+    for error in &errors {
+        *counts.entry(error.code).or_default() += 1;
+    }
+    let mut told: BTreeMap<&'static str, usize> = BTreeMap::new();
+    for error in errors {
+        let before = told.entry(error.code).or_default();
+        let more = counts.get(error.code).map_or(0, |all| all - MOST_ALIKE.min(*all));
+        *before += 1;
+        // One more takes no more room than to say so.
+        if *before <= MOST_ALIKE || more == 1 {
+            diagnostics.push(error);
+        } else if *before == MOST_ALIKE + 1 {
+            let span = error.span.unwrap_or_default();
+            diagnostics
+                .push(Diagnostic::error(error.code, span, format!("… and {more} more like these")).label("the next").help_opt(error.help));
+        }
+    }
+}
+
+/// What is wrong with the rows of a file.
+#[derive(Default)]
+struct Wrong {
+    errors: Vec<Diagnostic>,
+    /// Numbers with decimal commas where points are expected.
+    commas: Vec<Diagnostic>,
+}
+
+impl Wrong {
+    fn number(&mut self, error: &QuantityError, text: &str, span: Span) {
+        let list = if matches!(error, QuantityError::DecimalComma(_)) { &mut self.commas } else { &mut self.errors };
+        list.push(number_error(error, text, span));
+    }
+
+    fn row(&mut self, place: Span, [found, expected]: [usize; 2], (separator, numbers): (char, &str)) {
+        let (values, are) = (if found == 1 { "value" } else { "values" }, if expected == 1 { "is" } else { "are" });
+        let help = format!("separate the columns by `{separator}`, as in the header, and write decimal {numbers}");
+        self.errors.push(broken(place, format!("{found} {values}, {expected} {are} expected"), "this row", help));
+    }
+
+    /// Reports all of it; a file that is written with decimal commas, once, at its header.
+    fn report(mut self, header: Span, decimal_is_a_key: bool, diagnostics: &mut Diagnostics) {
+        if let [first, second, ..] = &self.commas[..] {
+            let (code, help) = if decimal_is_a_key {
+                ("E0912", "write `decimal = \"comma\"` beside `file`")
+            } else {
+                ("E0202", "write decimal points: 12.5, not 12,5")
+            };
+            let message = format!("{} numbers of this file have decimal commas", self.commas.len());
+            let mut error = Diagnostic::error(code, header, message).label("below this header").help(help);
+            for place in [first, second].into_iter().filter_map(|d| d.span) {
+                error = error.related(place, "such a number");
+            }
+            self.errors.push(error);
+        } else {
+            self.errors.append(&mut self.commas);
+        }
+        report_few(self.errors, diagnostics);
+    }
+}
+
 fn broken(span: Span, message: impl Into<String>, label: &str, help: impl Into<String>) -> Diagnostic {
     Diagnostic::error("E0112", span, message).label(label).help(help)
 }
@@ -104,7 +171,8 @@ pub fn rows<const N: usize>(file: &DataFile, columns: &[Column; N], most: usize,
     let separator = if header.contains(';') { ';' } else { ',' };
     let units = units((place, header), separator, columns, diagnostics)?;
     let before = diagnostics.errors();
-    let mut found = Vec::new();
+    let (mut found, mut wrong) = (Vec::new(), Wrong::default());
+    let top = place;
     for (place, line) in lines {
         if found.len() == most {
             diagnostics.push(broken(place, format!("more than {most} rows"), "one too many", "leave out rows: every second, every tenth"));
@@ -112,20 +180,19 @@ pub fn rows<const N: usize>(file: &DataFile, columns: &[Column; N], most: usize,
         }
         let values = cells(line, place, separator);
         if values.len() != N {
-            let message = format!("{} values, {N} are expected", values.len());
-            let help = format!("separate the columns by `{separator}`, as in the header, and write decimal points");
-            diagnostics.push(broken(place, message, "this row", help));
+            wrong.row(place, [values.len(), N], (separator, "points"));
             continue;
         }
         let mut row = [Cell { si: 0.0, span: place }; N];
         for ((cell, unit), (span, text)) in row.iter_mut().zip(&units).zip(values) {
             match Quantity::parse_in(text, unit) {
                 Ok(quantity) => *cell = Cell { si: quantity.si, span },
-                Err(error) => diagnostics.push(number_error(&error, text, span)),
+                Err(error) => wrong.number(&error, text, span),
             }
         }
         found.push(row);
     }
+    wrong.report(top, false, diagnostics);
     if found.is_empty() && diagnostics.errors() == before {
         diagnostics.push(broken(place, format!("`{file}` has no rows"), "nothing below this header", "write numbers below it"));
     }
@@ -151,7 +218,7 @@ pub fn named_rows<const N: usize>(
     most: usize,
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<[Cell; N]>> {
-    named_rows_with(file, columns, most, Decimal::Point, diagnostics)
+    named_rows_with(file, columns, most, None, diagnostics)
 }
 
 /// How numbers of a table are written.
@@ -174,14 +241,24 @@ impl Decimal {
     }
 }
 
-/// [`named_rows`] of a file whose numbers may have decimal commas.
+/// How a table of a measured curve is written.
+#[derive(Clone, Copy, Debug)]
+pub struct Written<'a> {
+    /// How its numbers are, as the key `decimal` says.
+    pub decimal: Decimal,
+    /// What curve may be measured, for messages: `force over travel`.
+    pub curve: &'a str,
+}
+
+/// [`named_rows`] of a measured curve, whose numbers may have decimal commas.
 pub fn named_rows_with<const N: usize>(
     file: &DataFile,
     columns: &[Named<'_>; N],
     most: usize,
-    decimal: Decimal,
+    written: Option<Written<'_>>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<[Cell; N]>> {
+    let decimal = written.map_or(Decimal::Point, |w| w.decimal);
     let content = file.content.as_ref().ok()?;
     let mut lines = lines(content);
     let Some((place, header)) = lines.next() else {
@@ -198,11 +275,12 @@ pub fn named_rows_with<const N: usize>(
     }
     let names = cells(header, place, separator);
     let before = diagnostics.errors();
-    let found: Vec<(usize, Unit)> = columns.iter().filter_map(|c| find(c, &names, place, diagnostics)).collect();
+    let found: Vec<(usize, Unit)> = columns.iter().filter_map(|c| find(c, &names, (place, written), diagnostics)).collect();
     if diagnostics.errors() > before {
         return None;
     }
-    let mut all = Vec::new();
+    let (mut all, mut wrong) = (Vec::new(), Wrong::default());
+    let top = place;
     for (place, line) in lines {
         if all.len() == most {
             diagnostics.push(broken(place, format!("more than {most} rows"), "one too many", "leave out rows: every second, every tenth"));
@@ -210,10 +288,8 @@ pub fn named_rows_with<const N: usize>(
         }
         let values = cells(line, place, separator);
         if values.len() != names.len() {
-            let message = format!("{} values, {} are expected", values.len(), names.len());
             let numbers = if decimal == Decimal::Comma { "commas" } else { "points" };
-            let help = format!("separate the columns by `{separator}`, as in the header, and write decimal {numbers}");
-            diagnostics.push(broken(place, message, "this row", help));
+            wrong.row(place, [values.len(), names.len()], (separator, numbers));
             continue;
         }
         let mut row = [Cell { si: 0.0, span: place }; N];
@@ -221,11 +297,12 @@ pub fn named_rows_with<const N: usize>(
             let (span, text) = values[*index];
             match decimal.parse(text, unit) {
                 Ok(quantity) => *cell = Cell { si: quantity.si, span },
-                Err(error) => diagnostics.push(number_error(&error, text, span)),
+                Err(error) => wrong.number(&error, text, span),
             }
         }
         all.push(row);
     }
+    wrong.report(top, written.is_some(), diagnostics);
     if all.is_empty() && diagnostics.errors() == before {
         diagnostics.push(broken(place, format!("`{file}` has no rows"), "nothing below this header", "write numbers below it"));
     }
@@ -233,7 +310,12 @@ pub fn named_rows_with<const N: usize>(
 }
 
 /// The place of a column in the header, and its unit.
-fn find(column: &Named<'_>, names: &[(Span, &str)], place: Span, diagnostics: &mut Diagnostics) -> Option<(usize, Unit)> {
+fn find(
+    column: &Named<'_>,
+    names: &[(Span, &str)],
+    (place, written): (Span, Option<Written<'_>>),
+    diagnostics: &mut Diagnostics,
+) -> Option<(usize, Unit)> {
     let plain = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
     let Named { header, key, dimension } = *column;
     let wanted = plain(&header.value);
@@ -250,7 +332,8 @@ fn find(column: &Named<'_>, names: &[(Span, &str)], place: Span, diagnostics: &m
         diagnostics.push(broken(*span, message, "named before", "give them names of their own"));
         return None;
     }
-    let help = format!("write `{key} = \"{} / {}\"`, and the same in the header of the file", key, unit_of(dimension));
+    let curve = written.map_or_else(String::new, |w| format!("this design is compared by its {}: ", w.curve));
+    let help = format!("{curve}write `{key} = \"{} / {}\"`, and the same in the header of the file", key, unit_of(dimension));
     let (code, message) = match name.split_once('/').map(|(_, unit)| Unit::parse(unit.trim())) {
         None if dimension == Dimension::Ratio => return Some((index, Unit::si(dimension))),
         None => ("E0208", format!("the column `{name}` has no unit")),
@@ -290,7 +373,7 @@ fn units<const N: usize>(
         return None;
     }
     if names.len() != N {
-        let message = format!("the header names {} columns, {N} are expected", names.len());
+        let message = format!("the header names {} {}, {N} are expected", names.len(), if names.len() == 1 { "column" } else { "columns" });
         diagnostics.push(broken(place, message, "this header", format!("{help}, columns separated by `,` or `;`")));
         return None;
     }

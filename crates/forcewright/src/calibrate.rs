@@ -63,7 +63,7 @@ pub(crate) const CODES: &[Explanation] = &[
     Explanation {
         code: "W0905",
         title: "something is not explained",
-        text: "No values of the parameters bring the curve to the measured points: what is left is systematic, as runs of signs or the lack of fit show. The message says where and how much. The estimates absorb as much of it as they can, so they are not to be trusted as material data, and their intervals are too narrow.\n\nWhat is missing may be in the model (joints of finite size: `model.joints = \"overlap\"`, friction, play), on the bench (`bench.offset`, `bench.compliance`), or in a number that is not looked for. Exit code 1.",
+        text: "No values of the parameters bring the curve to the measured points: what is left is systematic, as runs of signs or the lack of fit show. The message says where and how much. The estimates absorb as much of it as they can, so they are not to be trusted as material data, and their intervals are too narrow.\n\nWhere signs alternate from row to row, the file has two curves (a tangent and a secant stiffness, two columns in one), or rows that ring: an amplifier or a controller that overshoots. Those are no errors of independent measurements.\n\nWhat is missing may be in the model (joints of finite size: `model.joints = \"overlap\"`, friction, play), on the bench (`bench.offset`, `bench.compliance`), or in a number that is not looked for. Exit code 1.",
     },
     Explanation {
         code: "W0906",
@@ -83,12 +83,17 @@ pub(crate) const CODES: &[Explanation] = &[
     Explanation {
         code: "W0909",
         title: "too few points to judge",
-        text: "Whether the parameters explain a curve shows in what they leave: with few points beyond the number of parameters any pattern can be chance. Nothing contradicts the estimates, and nothing confirms the model. Measure at more places; a dozen beyond the number of parameters is enough.",
+        text: "Whether the parameters explain a curve shows in what they leave: with few points beyond the number of parameters any pattern can be chance. Points at one place, however many, show no curve at all: at least three places more than there are parameters are needed. Nothing contradicts the estimates, and nothing confirms the model. Measure at more places; a dozen beyond the number of parameters is enough.",
     },
     Explanation {
         code: "W0910",
         title: "rows that repeat each other",
-        text: "Every row counts as a measurement of its own. Where a logger writes faster than it measures, or a table was pasted twice, rows are copies that tell nothing new, and intervals are too narrow by the root of how often each is there. Remove them. Rows that agree because a display shows few digits are measurements, and may stay.",
+        text: "Every row counts as a measurement of its own, but for two kinds that tell nothing new and count once: a row that repeats the one before it to the last digit, as of a logger that writes faster than it measures or a display that stands, and a table that begins again from its first row, as when it was pasted twice. Rows that repeat others in other ways count, and are told of from a twentieth of the points on: if they are copies, remove them, since with them intervals are too narrow (of every point twice, 88 % for 95 %). Rows that agree because a display shows few digits are measurements, and may stay.",
+    },
+    Explanation {
+        code: "W0911",
+        title: "points far off the others",
+        text: "These points lie more than four robust standard deviations off what the other points say, and more where points are few: about one good measurement in a hundred has such a point. Where every point counts the same (`loss = \"squares\"`), they draw the estimates to themselves and widen all intervals.\n\nLook at the rows. What was written down wrongly is corrected or left out; where such points come again and again, let them count little:\n\n    [calibrate]\n    loss = \"tukey\"",
     },
 ];
 
@@ -121,6 +126,8 @@ pub struct Calibrated {
     pub unit_sizes: Vec<f64>,
     /// The points that counted.
     pub points: Points,
+    /// Rows of the file that repeat others as copies do, and are not among them.
+    pub copied_rows: usize,
     /// The curve as it is drawn, branch by branch, over the range of its points.
     lines: Vec<picture::Line>,
     /// How many of them lie beyond the ends of the curve, on the bench that was found.
@@ -196,6 +203,7 @@ impl Loaded {
             units,
             unit_sizes,
             points: ready.points,
+            copied_rows: ready.record.copies,
             lines,
             beyond,
             measurement: ready.measurement,
@@ -222,8 +230,9 @@ impl Loaded {
                 return NoCalibration::NoStart(self.refused(diagnostics));
             }
             NoFit::Study(error) => {
+                let code = if matches!(error, CalibrateError::TooFew { .. }) { "E0904" } else { "E0906" };
                 let help = "parameters need a value inside a range, and two points more than there are of them";
-                diagnostics.push(Diagnostic::error("E0906", place, error.to_string()).label("this calibration").help(help));
+                diagnostics.push(Diagnostic::error(code, place, error.to_string()).label("this calibration").help(help));
             }
         }
         NoCalibration::Refused(self.refused(diagnostics))
@@ -261,7 +270,8 @@ impl Loaded {
         let ascending = stations.first() <= stations.last();
         let wanted = section.wanted(self.understood.numbers(), dimensions, diagnostics);
         let bench = measurement.value.bench(dimensions, diagnostics);
-        let record = measurement.record(dimensions, ascending, diagnostics);
+        let curve = compared(&*probe, before, &axes);
+        let record = measurement.record(dimensions, (ascending, &curve), diagnostics);
         let (wanted, bench, record) = (wanted?, bench?, record?);
         if !wanted.begins_inside(&measurement.value, &bench, diagnostics) {
             return None;
@@ -277,7 +287,7 @@ impl Loaded {
         if count < least {
             let named = measurement.value.file.as_ref().map_or(place, |f| f.span);
             diagnostics.push(
-                Diagnostic::error("E0904", named, format!("{count} of {} points can be compared, {least} are needed", record.x.len()))
+                Diagnostic::error("E0904", named, few_points(count, &record, least))
                     .label("measured here")
                     .help(format!("{ranges}: {REACH}")),
             );
@@ -395,6 +405,31 @@ impl Ready {
 
 fn no_curve(place: Span, why: &str) -> Diagnostic {
     Diagnostic::error("E0908", place, why).label("this calibration").help("`forcewright solve` shows the curves of the design")
+}
+
+/// What curve is compared, in words: `tangent stiffness at the output over torque at the output`.
+fn compared(evaluator: &dyn Evaluator, before: &Report, axes: &[Axis; 2]) -> String {
+    let [x, y] = axes.each_ref().map(|axis| {
+        // Without its symbol, and in the middle of a sentence.
+        let label = axis.label.rsplit_once(' ').filter(|(_, symbol)| symbol.chars().count() == 1).map_or(&*axis.label, |(label, _)| label);
+        let mut letters = label.chars();
+        letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+    });
+    let tangent = if before.outcome.mechanism == "capstan" { "tangent " } else { "" };
+    let both = if evaluator.outputs().first().is_some_and(|o| o.name.ends_with("_up")) { ", up and down," } else { "" };
+    format!("{tangent}{y}{both} over {x}")
+}
+
+/// That points are too few.
+fn few_points(count: usize, record: &Record, least: usize) -> String {
+    let can = format!("{count} of {} {} can be compared", record.x.len(), if record.x.len() == 1 { "point" } else { "points" });
+    match record.copies {
+        0 => format!("{can}, {least} are needed"),
+        copies => {
+            let (rows, are) = if copies == 1 { ("row", "is a copy") } else { ("rows", "are copies") };
+            format!("{can}, {least} are needed; {copies} more {rows} {are}, to the last digit")
+        }
+    }
 }
 
 /// The axes of the curve that studies see: of the analysis, the one with its name, else the first with its ordinate.

@@ -9,6 +9,10 @@ use forcewright::contract::data::names_a_file;
 use forcewright::study::calibrate::{Progress, Stop};
 use forcewright::{Calibrated, Choices, FileError, Files, Loaded, NoCalibration};
 
+mod calibrate {
+    mod records;
+}
+
 /// Files in memory.
 #[derive(Clone, Default)]
 struct Memory(BTreeMap<PathBuf, String>);
@@ -393,18 +397,6 @@ fn points_about_the_shift_tell_the_friction() {
     let found = calibrated(&format!("{start}{study}"), &csv("in / N*mm,out / N*mm", points)).unwrap();
     let value = found.fit.parameters[0].estimate.value;
     assert!((value - 0.2).abs() < 1e-6, "{value}");
-}
-
-/// Rows that were written twice count twice, and that is told.
-#[test]
-fn copied_rows_are_told_of() {
-    let once = strip_csv(187.0, 0.001, 3);
-    let mut lines = once.lines();
-    let header = lines.next().unwrap();
-    let twice = lines.fold(format!("{header}\n"), |text, line| format!("{text}{line}\n{line}\n"));
-    assert!(!codes(&calibrated(STRIP, &once).unwrap()).contains(&"W0910"));
-    let found = calibrated(STRIP, &twice).unwrap();
-    assert!(codes(&found).contains(&"W0910"), "{:?}", codes(&found));
 }
 
 /// With a variant, the estimates go into it; where the file has one of that name, into another; what the command line sets is written.

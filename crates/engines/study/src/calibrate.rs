@@ -22,7 +22,7 @@ pub use curve::{Bench, BenchParameter, Branch, Curve, CurveError};
 pub use filter::{Filter, FilterError};
 pub use identify::{Identified, Loose};
 pub use loss::{Loss, mad};
-pub use residuals::{Against, LackOfFit, Residuals, Runs, Stretch};
+pub use residuals::{Against, LackOfFit, Residuals, Runs, SignTest, Stretch};
 pub use search::Stop;
 
 pub(crate) use linear::Singular;
@@ -144,9 +144,9 @@ pub enum CalibrateError {
         /// Places, values, raw values, points in branches.
         lengths: [usize; 4],
     },
-    /// Too few points for the parameters.
+    /// Too few points for the parameters. Points that repeat each other exactly are one.
     TooFew {
-        /// Points.
+        /// Different points.
         points: usize,
         /// Parameters.
         parameters: usize,
@@ -168,7 +168,7 @@ impl fmt::Display for CalibrateError {
             Self::NoParameter => f.write_str("there is no parameter to look for"),
             Self::Shape { lengths: [x, y, raw, points] } => write!(f, "{x} places, {y} values, {raw} raw values, {points} in branches"),
             Self::TooFew { points, parameters } => {
-                write!(f, "{points} points are too few for {parameters} parameters: at least {} are needed", parameters + 2)
+                write!(f, "{points} different points are too few for {parameters} parameters: at least {} are needed", parameters + 2)
             }
             Self::Parameter { name } => write!(f, "bounds, start, scale or prior of `{name}` make no sense"),
             Self::NotFinite => f.write_str("a measured value is not a finite number"),
@@ -343,8 +343,9 @@ fn check(parameters: &[Parameter], measured: &Measured<'_>) -> Result<(), Calibr
     if parameters.is_empty() {
         return Err(CalibrateError::NoParameter);
     }
-    if points < parameters.len() + 2 {
-        return Err(CalibrateError::TooFew { points, parameters: parameters.len() });
+    let different = different(measured);
+    if different < parameters.len() + 2 {
+        return Err(CalibrateError::TooFew { points: different, parameters: parameters.len() });
     }
     let sound = |p: &Parameter| {
         let prior = p.prior.is_none_or(|q| q.mean.is_finite() && q.sd > 0.0 && q.sd.is_finite());
@@ -355,6 +356,14 @@ fn check(parameters: &[Parameter], measured: &Measured<'_>) -> Result<(), Calibr
     }
     let all = measured.x.iter().chain(measured.y).chain(measured.raw);
     if all.copied().all(f64::is_finite) { Ok(()) } else { Err(CalibrateError::NotFinite) }
+}
+
+/// How many points differ in place or value from all others: what is there twice scatters no more than once.
+fn different(measured: &Measured<'_>) -> usize {
+    let mut all: Vec<[u64; 2]> = measured.x.iter().zip(measured.raw).map(|(x, y)| [x.to_bits(), y.to_bits()]).collect();
+    all.sort_unstable();
+    all.dedup();
+    all.len()
 }
 
 /// A fit whose weights and scatter are looked for together with its parameters.

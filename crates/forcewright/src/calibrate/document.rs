@@ -1,6 +1,6 @@
 //! The calibration as a document for scripts: SI values with their units named.
 
-use forcewright_study::calibrate::{Against, Bound, Stop};
+use forcewright_study::calibrate::{Against, Bound, SignTest, Stop};
 use serde_json::{Value, json};
 
 use super::Calibrated;
@@ -31,6 +31,11 @@ impl Calibrated {
             "points": self.points.x.len(),
             "left_out": self.points.left_out,
             "beyond": self.beyond,
+            "copied_rows": self.copied_rows,
+            "far": self.fit.residuals.far.iter().map(|i| json!({
+                "x": number(self.points.x[*i]),
+                "residual": number(self.fit.residuals.values[*i]),
+            })).collect::<Vec<_>>(),
             "hardly_counting": self.fit.weights.iter().filter(|w| **w < HARDLY).count(),
             "confidence": self.confidence.level(),
             "noise": { "value": number(fit.noise), "unit": self.axes[1].dimension.si_symbol() },
@@ -84,16 +89,27 @@ impl Calibrated {
         let residuals = &self.fit.residuals;
         json!({
             "unexplained": residuals.unexplained,
+            "alternates": residuals.alternates,
             "judged": residuals.judged,
+            "places": residuals.places,
             "systematic": number(residuals.systematic),
             "scatter": number(residuals.scatter),
             "autocorrelation": number(residuals.autocorrelation),
-            "runs": { "observed": residuals.runs.observed, "expected": number(residuals.runs.expected), "p": number(residuals.runs.p) },
+            "runs": {
+                "test": if residuals.runs.test == SignTest::Runs { "runs" } else { "side" },
+                "observed": residuals.runs.observed,
+                "expected": number(residuals.runs.expected),
+                "above": residuals.runs.sides[0],
+                "below": residuals.runs.sides[1],
+                "p": number(residuals.runs.p),
+                "p_many": number(residuals.runs.p_many),
+            },
             "lack_of_fit": residuals.lack.map(|l| json!({
                 "against": if l.against == Against::Repeats { "repeats" } else { "smooth" },
                 "ratio": number(l.ratio),
                 "degrees": l.degrees,
                 "p": number(l.p),
+                "p_small": number(l.p_small),
             })),
             "stretch": residuals.stretch.map(|s| json!({
                 "branch": self.points.names.get(s.branch),
@@ -108,11 +124,21 @@ impl Calibrated {
     fn curve(&self) -> Value {
         let [x, y] = &self.axes;
         let mut first = 0;
-        let branches = self.points.branches.iter().zip(&self.points.names).map(|(branch, name)| {
+        let each = self.points.branches.iter().zip(&self.points.names).zip(&self.lines);
+        let branches = each.map(|((branch, name), line)| {
             let own = first..first + branch.x.len();
             first = own.end;
             let of = |values: &[f64]| values[own.clone()].iter().map(|v| number(*v)).collect::<Vec<_>>();
-            json!({ "name": name, "x": of(&self.points.x), "weights": of(&self.fit.weights), "measured": of(&self.points.raw), "before": of(&self.fit.before), "after": of(&self.fit.after) })
+            json!({
+                "name": name,
+                "x": of(&self.points.x),
+                "weights": of(&self.fit.weights),
+                "measured": of(&self.points.raw),
+                "before": of(&self.fit.before),
+                "after": of(&self.fit.after),
+                // As it is drawn, between the points too.
+                "drawn": line.document(),
+            })
         });
         json!({
             "x": { "name": x.name, "unit": x.dimension.si_symbol() },
@@ -123,6 +149,6 @@ impl Calibrated {
 }
 
 /// A number, or `null` where there is none.
-fn number(value: f64) -> Value {
+pub(super) fn number(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }

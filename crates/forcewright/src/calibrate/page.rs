@@ -9,7 +9,18 @@ use super::Calibrated;
 /// What the tests of the residuals are.
 const TESTS: &str = "Two tests look for what is systematic: whether points on one side of the curve stand together (runs of signs), or next \
                      to all lie on one (sign test), and whether a smooth line through what is left explains more of it than chance would (lack of fit). p is the chance that \
-                     scatter alone looks like this; below 0.005 in either test something is called not explained.";
+                     scatter alone looks like this; below 0.005 in either test something is called not explained. So it is below 0.0002 the other \
+                     way round: more runs, or a smaller ratio, than errors that know nothing of each other make.";
+
+/// A correlation; one of two parameters is not shown as the whole that only that with itself is.
+fn shown(r: f64, own: bool) -> String {
+    let most = if r.abs() > 0.9999 { "0.9999" } else { "0.999" };
+    match r {
+        r if own || r.abs() < 0.9995 => format!("{:.3}", r + 0.0),
+        r if r > 0.0 => format!("> {most}"),
+        _ => format!("< -{most}"),
+    }
+}
 
 impl Calibrated {
     /// `report.html`. `input_name` is the file as the user named it, `command` the command that repeats this run.
@@ -18,7 +29,7 @@ impl Calibrated {
         let figures = |all: Vec<forcewright_model::Figure>| all.into_iter().map(|f| StudyPart::Figure(Box::new(f))).collect();
         let mut left: Vec<StudyPart> = figures(vec![self.residuals()]);
         left.insert(0, StudyPart::Text(self.residual_verdict()));
-        if let Some(far) = self.hardly_counting() {
+        if let Some(far) = self.hardly_counting().or_else(|| self.far_off().map(|far| format!("{far}."))) {
             left.insert(1, StudyPart::Text(far));
         }
         left.push(StudyPart::Text(TESTS.to_owned()));
@@ -105,7 +116,7 @@ impl Calibrated {
         let mut columns = vec![("Correlation of".to_owned(), StudyColumn::Code)];
         columns.extend(names.iter().map(|name| (name.clone(), StudyColumn::Number)));
         let row = |i: usize| {
-            let cells = (0..n).map(|j| format!("{:.3}", self.fit.correlations[i * n + j] + 0.0));
+            let cells = (0..n).map(|j| shown(self.fit.correlations[i * n + j], i == j));
             std::iter::once(names[i].clone()).chain(cells).collect()
         };
         StudyPart::Table { caption: "Correlations of the errors of the estimates".to_owned(), columns, rows: (0..n).map(row).collect() }

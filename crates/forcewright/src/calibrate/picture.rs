@@ -5,7 +5,9 @@ use forcewright_model::{Figure, FigureContent, HorizontalBand, HorizontalLine, P
 
 use forcewright_study::calibrate::{Branch, Curve, Model};
 use forcewright_study::evaluator::Evaluation;
+use serde_json::{Value, json};
 
+use super::document::number;
 use super::{Calibrated, Ready};
 
 /// Most points of a line that is drawn.
@@ -22,6 +24,14 @@ pub(super) struct Line {
     before: Vec<f64>,
     /// With the estimates.
     after: Vec<f64>,
+}
+
+impl Line {
+    /// For scripts, SI; empty where a design has no curve.
+    pub(super) fn document(&self) -> Value {
+        let of = |values: &[f64]| values.iter().map(|v| number(*v)).collect::<Vec<_>>();
+        json!({ "x": of(&self.x), "before": of(&self.before), "after": of(&self.after) })
+    }
 }
 
 impl Ready {

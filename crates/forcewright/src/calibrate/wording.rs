@@ -4,18 +4,22 @@ use forcewright_base::diagnostics::{Diagnostic, Span};
 use forcewright_base::units::{format_number, format_si};
 use forcewright_contract::calibration::{Wanted, per};
 use forcewright_model::Axis;
-use forcewright_study::calibrate::{Against, BenchParameter, Bound, Loose, Stop};
+use forcewright_study::calibrate::{Against, BenchParameter, Bound, Loose, Runs, SignTest, Stop};
 
 use super::Calibrated;
 
 /// Distance of what was measured from a prior's mean, in standard deviations of the difference, that contradicts it.
 const CONTRADICTION: f64 = 3.0;
-/// Part of the points from which repeated ones are told of.
-const MANY_COPIES: f64 = 0.2;
+/// Part of the points from which repeated ones that count are told of: of so many, intervals are too narrow by a fortieth.
+const MANY_COPIES: f64 = 0.05;
 /// Too few points to tell anything.
 const TOO_FEW: &str = "Too few points to judge";
 /// Weight below which a point hardly counts.
 pub(super) const HARDLY: f64 = 0.1;
+/// Points that are far off by themselves, at most, though they are the stretch that is not explained.
+const MOST_ALONE: usize = 2;
+/// Correlations beyond it are shown as that.
+const MOST_CORRELATION: f64 = 0.9999;
 /// Most places at which such points are named.
 const MOST_PLACES: usize = 6;
 /// Digits of an estimate whose interval is as wide as itself, and at most.
@@ -104,23 +108,12 @@ impl Calibrated {
     pub fn residual_verdict(&self) -> String {
         let residuals = &self.fit.residuals;
         let (x, y) = (&self.axes[0].display, &self.axes[1].display);
-        let tests = {
-            let lack = residuals.lack.map_or_else(String::new, |l| {
-                let against = match l.against {
-                    Against::Repeats => "repeats",
-                    Against::Smooth => "a smooth curve through the residuals",
-                };
-                let [above, below] = l.degrees;
-                format!("lack of fit against {against}: F({above}, {below}) = {}, p {}; ", format_number(l.ratio, 3), probability(l.p))
-            });
-            let runs = residuals.runs;
-            let expected = format_number(runs.expected, 3);
-            format!("{lack}{} runs of signs, {expected} expected, p {}", runs.observed, probability(runs.p))
-        };
+        let tests = self.tests();
         if !residuals.judged {
             return format!(
-                "{TOO_FEW} whether anything systematic is left beside the scatter of {} ({tests}).",
-                format_si(self.fit.noise, y, 3)
+                "{TOO_FEW} whether anything systematic is left beside the scatter of {}{} ({tests}).",
+                format_si(self.fit.noise, y, 3),
+                if self.few_places() { format!(": they lie at {} only", counted(residuals.places, "place")) } else { String::new() }
             );
         }
         if !residuals.unexplained {
@@ -130,56 +123,110 @@ impl Calibrated {
             let side = if s.mean > 0.0 { "above" } else { "below" };
             let branch =
                 if self.points.names.len() > 1 { format!(", {}", self.points.names.get(s.branch).unwrap_or(&"")) } else { String::new() };
-            format!(
-                "; from {} to {}{branch}, the measured points lie {} {side} the fitted curve on average",
-                format_si(s.from, x, 4),
-                format_si(s.to, x, 4),
-                format_si(s.mean.abs(), y, 3)
-            )
+            let (from, to) = (format_si(s.from, x, 4), format_si(s.to, x, 4));
+            let stretch = if from == to { format!("at {from}") } else { format!("from {from} to {to}") };
+            let size = format_si(s.mean.abs(), y, 3);
+            if s.points == 1 {
+                format!("; {stretch}{branch}, the measured point lies {size} {side} the fitted curve")
+            } else {
+                format!("; {stretch}{branch}, the measured points lie {size} {side} the fitted curve on average")
+            }
         });
         let size = format_si(residuals.systematic, y, 3);
+        if residuals.alternates {
+            return format!(
+                "The parameters do not explain all: signs alternate, as of two curves in one file, or of rows that ring: {size} alternates \
+                 (root mean square), beside a scatter of {} ({tests}).",
+                format_si(residuals.scatter, y, 3)
+            );
+        }
         format!(
             "The parameters do not explain all: {size} is systematic (root mean square), beside a scatter of {}{place} ({tests}).",
             format_si(residuals.scatter, y, 3)
         )
     }
 
-    /// The points that a robust loss lets hardly count, as branch and index, branch by branch in the order of their places.
-    fn hardly(&self) -> Vec<(usize, Vec<usize>)> {
+    /// What the tests of the residuals say.
+    fn tests(&self) -> String {
+        let residuals = &self.fit.residuals;
+        let lack = residuals.lack.map_or_else(String::new, |l| {
+            let against = match l.against {
+                Against::Repeats => "repeats",
+                Against::Smooth => "a smooth curve through the residuals",
+            };
+            let [above, below] = l.degrees;
+            let p = if l.p_small < l.p { format!("{} of so small a ratio", probability(l.p_small)) } else { probability(l.p) };
+            format!("lack of fit against {against}: F({above}, {below}) = {}, p {p}; ", format_number(l.ratio, 3))
+        });
+        format!("{lack}{}", signs(&residuals.runs))
+    }
+
+    /// Whether points are too few to judge because they lie at too few places.
+    fn few_places(&self) -> bool {
+        let residuals = &self.fit.residuals;
+        !residuals.judged && 2 * residuals.places <= self.points.x.len()
+    }
+
+    /// Points as branches and runs of indices, branch by branch in the order of their places.
+    fn runs_of(&self, far: &dyn Fn(usize) -> bool) -> Vec<(usize, Vec<usize>)> {
         let of = |(branch, order): (usize, Vec<usize>)| {
-            let far = |i: &usize| self.fit.weights.get(*i).is_some_and(|w| *w < HARDLY);
-            order.chunk_by(|a, b| far(a) == far(b)).filter(|run| far(&run[0])).map(|run| (branch, run.to_vec())).collect::<Vec<_>>()
+            order.chunk_by(|a, b| far(*a) == far(*b)).filter(|run| far(run[0])).map(|run| (branch, run.to_vec())).collect::<Vec<_>>()
         };
         self.sorted().into_iter().enumerate().flat_map(of).collect()
     }
 
-    /// How many points a robust loss lets hardly count, and where they are; nothing where all count.
-    pub fn hardly_counting(&self) -> Option<String> {
-        let runs = self.hardly();
-        let count: usize = runs.iter().map(|(_, run)| run.len()).sum();
-        if count == 0 {
-            return None;
-        }
+    /// Where such points are, with what is to be said of neighbours.
+    fn places_of(&self, runs: &[(usize, Vec<usize>)], said: &dyn Fn(&[usize]) -> String) -> String {
         let show = |i: usize| format_si(self.points.x[i], &self.axes[0].display, 4);
         let one = |(branch, run): &(usize, Vec<usize>)| {
             let name = self.points.names.get(*branch).filter(|_| self.points.names.len() > 1);
             let name = name.map_or_else(String::new, |name| format!(" ({name})"));
-            match run[..] {
-                [only] => format!("at {}{name}", show(only)),
-                [first, .., last] => format!("{} from {} to {}{name}", run.len(), show(first), show(last)),
+            let place = match run[..] {
+                [only] => format!("at {}", show(only)),
+                [first, .., last] if show(first) == show(last) => format!("{} at {}", run.len(), show(first)),
+                [first, .., last] => format!("{} from {} to {}", run.len(), show(first), show(last)),
                 [] => String::new(),
-            }
+            };
+            format!("{place}{name}{}", said(run))
         };
         let mut places: Vec<String> = runs.iter().take(MOST_PLACES).map(one).collect();
         let others: usize = runs.iter().skip(MOST_PLACES).map(|(_, run)| run.len()).sum();
         if others > 0 {
             places.push(format!("{others} elsewhere"));
         }
-        let (of, count_in_words) = (self.points.x.len(), if count == 1 { "hardly counts" } else { "hardly count" });
-        Some(format!(
-            "{count} of {of} points {count_in_words}, with a weight below {HARDLY}, as they lie far off the curve: {}.",
-            places.join(", ")
-        ))
+        places.join(", ")
+    }
+
+    /// Points that lie far off the others while every point counts the same, with their places and how far they lie off the curve; those of a
+    /// stretch that is not explained are told with it.
+    pub fn far_off(&self) -> Option<String> {
+        let residuals = &self.fit.residuals;
+        let known = residuals.stretch.filter(|s| s.points > MOST_ALONE);
+        let told = |x: f64| known.is_some_and(|s| (s.from..=s.to).contains(&x));
+        let far = |i: usize| residuals.far.contains(&i) && !told(self.points.x[i]);
+        let runs = self.runs_of(&far);
+        let count: usize = runs.iter().map(|(_, run)| run.len()).sum();
+        let size = |run: &[usize]| {
+            let off = run.iter().map(|i| residuals.values[*i]).fold(0.0, |most: f64, r| if r.abs() > most.abs() { r } else { most });
+            let up_to = if run.len() > 1 { "up to " } else { "" };
+            let side = if off > 0.0 { "above" } else { "below" };
+            format!(", {up_to}{} {side} the curve", format_si(off.abs(), &self.axes[1].display, 3))
+        };
+        let (of, lie) = (self.points.x.len(), if count == 1 { "lies" } else { "lie" });
+        (count > 0).then(|| format!("{count} of {of} points {lie} far off the others: {}", self.places_of(&runs, &size)))
+    }
+
+    /// How many points a robust loss lets hardly count, and where they are; nothing where all count.
+    pub fn hardly_counting(&self) -> Option<String> {
+        let runs = self.runs_of(&|i| self.fit.weights.get(i).is_some_and(|w| *w < HARDLY));
+        let count: usize = runs.iter().map(|(_, run)| run.len()).sum();
+        if count == 0 {
+            return None;
+        }
+        let of = self.points.x.len();
+        let (count_in_words, lie) = if count == 1 { ("hardly counts", "it lies") } else { ("hardly count", "they lie") };
+        let places = self.places_of(&runs, &|_| String::new());
+        Some(format!("{count} of {of} points {count_in_words}, with a weight below {HARDLY}, as {lie} far off the curve: {places}."))
     }
 
     /// The result in one sentence.
@@ -195,6 +242,9 @@ impl Calibrated {
             // What the curve would determine without the bound is not known.
             Stop::Converged if held => "The measured curve would be met better beyond the range of a parameter",
             Stop::Converged if !self.determined() => "The measured curve does not determine all parameters",
+            Stop::Converged if self.few_places() => {
+                "All parameters are determined; the points lie at too few places to judge whether they explain the curve"
+            }
             Stop::Converged => "All parameters are determined; the points are too few to judge whether they explain the curve",
             Stop::Interrupted => "Interrupted: the best parameters so far",
             Stop::Stalled | Stop::RoundLimit | Stop::NoStart(_) => "The search did not come to its end",
@@ -233,23 +283,66 @@ impl Calibrated {
         )
     }
 
+    /// Parameters that are not determined, in a sentence for each set that no other has a part in.
+    fn not_determined(&self) -> Vec<String> {
+        let mut sets: Vec<(Vec<usize>, Vec<&Loose>)> = Vec::new();
+        for loose in &self.fit.identified.loose {
+            let own: Vec<usize> = loose.changes.iter().map(|(i, _)| *i).collect();
+            let (met, mut rest): (Vec<_>, Vec<_>) = sets.into_iter().partition(|(set, _)| set.iter().any(|i| own.contains(i)));
+            let (mut all, mut directions) = (own, Vec::new());
+            for (set, before) in met {
+                all.extend(set);
+                directions.extend(before);
+            }
+            directions.push(loose);
+            all.sort_unstable();
+            all.dedup();
+            rest.push((all, directions));
+            sets = rest;
+        }
+        sets.iter().map(|(set, directions)| self.not_determined_set(set, directions)).collect()
+    }
+
+    fn not_determined_set(&self, set: &[usize], directions: &[&Loose]) -> String {
+        let held = set.iter().any(|i| self.fit.parameters[*i].parameter.prior.is_some());
+        let tail = if held { "; a prior decides" } else { "" };
+        let names = set.iter().map(|i| format!("`{}`", self.name(*i))).collect::<Vec<_>>();
+        match (&names[..], directions) {
+            ([only], _) => format!("the measurement does not determine {only}{tail}"),
+            (_, [one]) => {
+                format!("the measurement does not determine {}: together they leave the curve as it is{tail}", self.combination(one))
+            }
+            // Directions are at right angles: as many as there are parameters are all that these can do.
+            ([a, b], _) => {
+                format!("the measurement determines neither {a} nor {b}: what each changes of the curve is lost in the scatter{tail}")
+            }
+            (_, _) if directions.len() >= names.len() => {
+                format!(
+                    "the measurement determines none of {}: what each changes of the curve is lost in the scatter{tail}",
+                    listed(&names)
+                )
+            }
+            _ => {
+                let firm = names.len() - directions.len();
+                let firm = if firm == 1 { "one combination".to_owned() } else { format!("{firm} combinations") };
+                format!("of {} the measurement determines no more than {firm}{tail}", listed(&names))
+            }
+        }
+    }
+
     /// Says what is not sound about the result.
     pub(super) fn warn(&mut self, place: Span) {
         let mut all: Vec<(&'static str, String, &'static str)> = Vec::new();
-        for loose in &self.fit.identified.loose {
-            let held = loose.changes.iter().any(|(i, _)| self.fit.parameters[*i].parameter.prior.is_some());
-            let tail = if held { "; a prior decides" } else { "" };
-            let message = match loose.changes[..] {
-                [(only, _)] => format!("the measurement does not determine `{}`{tail}", self.name(only)),
-                _ => {
-                    format!("the measurement does not determine {}: together they leave the curve as it is{tail}", self.combination(loose))
-                }
-            };
+        for message in self.not_determined() {
             all.push(("W0902", message, "take one of them out, or give it a `prior`"));
         }
         for (a, b, r) in &self.fit.identified.tied {
-            let message =
-                format!("`{}` and `{}` are hardly told apart: their errors have a correlation of {r:.4}", self.name(*a), self.name(*b));
+            let message = format!(
+                "`{}` and `{}` are hardly told apart: their errors have a correlation {}",
+                self.name(*a),
+                self.name(*b),
+                correlation(*r)
+            );
             all.push((
                 "W0903",
                 message,
@@ -288,26 +381,81 @@ impl Calibrated {
             let message = format!("{} {points} that count {lie} beyond the ends of the curve, on the bench that was found", self.beyond);
             all.push(("W0908", message, "compute further, or leave out the ends of the record"));
         }
-        let (copies, count) = (self.points.copies(), self.points.x.len());
-        if copies as f64 > MANY_COPIES * count as f64 {
-            let message = format!("{copies} of {count} points repeat another one exactly, and count as if they had been measured");
-            all.push(("W0910", message, "if a logger wrote rows twice, remove the copies: with them intervals are too narrow"));
+        let (dropped, copies, count) = (self.copied_rows, self.points.copies(), self.points.x.len());
+        if dropped > 0 {
+            let (rows, repeat) = if dropped == 1 { ("row", "repeats") } else { ("rows", "repeat") };
+            let message =
+                format!("{dropped} {rows} of the file {repeat} the row before, or the table as a whole, exactly: once is what they count");
+            all.push((
+                "W0910",
+                message,
+                "a logger that writes faster than it measures, a display that stands, or a table that was pasted twice",
+            ));
+        }
+        if copies as f64 >= MANY_COPIES * count as f64 && copies > 0 {
+            let (repeat, they) = if copies == 1 { ("repeats", "counts as if it") } else { ("repeat", "count as if they") };
+            let had = if copies == 1 { "had been measured again" } else { "had been measured" };
+            let message = format!("{copies} of {count} points {repeat} another one exactly, and {they} {had}");
+            all.push(("W0910", message, "if they are copies, remove them: with them intervals are too narrow"));
+        }
+        if let Some(message) = self.far_off() {
+            all.push(("W0911", message, "look at these rows; `loss = \"tukey\"` or `\"huber\"` lets far points count little"));
         }
         if self.fit.residuals.unexplained {
             all.push((
                 "W0905",
                 self.residual_verdict(),
-                "do not take the estimates for material data; look for what the model lacks there",
+                if self.fit.residuals.alternates {
+                    "do not take the estimates for material data; is it one curve, and are its rows of one kind?"
+                } else {
+                    "do not take the estimates for material data; look for what the model lacks there"
+                },
             ));
         }
         if self.determined() && !self.fit.residuals.judged && !self.fit.residuals.unexplained {
-            let message = format!("{TOO_FEW} whether the parameters explain the curve: {}", self.points.x.len());
+            let message = format!(
+                "{TOO_FEW} whether the parameters explain the curve: {} at {}",
+                self.points.x.len(),
+                counted(self.fit.residuals.places, "place")
+            );
             all.push(("W0909", message, "measure at more places"));
         }
         for (code, message, help) in all {
             self.diagnostics.push(Diagnostic::warning(code, place, message).label("this calibration").help(help));
         }
     }
+}
+
+/// What the signs of the residuals say.
+fn signs(runs: &Runs) -> String {
+    let [above, below] = runs.sides;
+    match runs.test {
+        SignTest::Side => format!("{} of {} on one side (sign test), p {}", above.max(below), above + below, probability(runs.p)),
+        SignTest::Runs => {
+            let p = if runs.p_many < runs.p { format!("{} of so many", probability(runs.p_many)) } else { probability(runs.p) };
+            let number = counted(runs.observed, "run");
+            format!("{number} of signs, {} expected, p {p}", format_number(runs.expected, 3))
+        }
+    }
+}
+
+/// One thing, two things.
+fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// a, b and c.
+fn listed(names: &[String]) -> String {
+    match names {
+        [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
+        _ => names.concat(),
+    }
+}
+
+/// A correlation near ±1: as many digits as show that it is not that.
+fn correlation(r: f64) -> String {
+    let sign = if r < 0.0 { "−" } else { "" };
+    if r.abs() > MOST_CORRELATION { format!("beyond {sign}{MOST_CORRELATION}") } else { format!("of {sign}{:.4}", r.abs()) }
 }
 
 /// Digits that show an interval of this width about a value.

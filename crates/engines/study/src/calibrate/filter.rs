@@ -48,6 +48,10 @@ impl std::error::Error for FilterError {}
 
 /// Logarithm of what is left of an end, negative.
 const FORGOTTEN: f64 = 24.0;
+/// The same of what may be left of it where a record is too short for more: its ends are then off by a thousandth of its width.
+const NEARLY_FORGOTTEN: f64 = 7.0;
+/// Periods of the cut-off that a record has at least: what is slower is no error of it.
+const LEAST_PERIODS: f64 = 3.0;
 
 impl Filter {
     /// Of an order from 1 to 8, with a cut-off as a part of the sampling rate, below one half.
@@ -76,10 +80,16 @@ impl Filter {
             sections.push(Section { b: [b, b, 0.0], a: [(w - 1.0) / (1.0 + w), 0.0] });
         }
         // The slowest pole forgets an end to the last digits within so many rows.
-        let rate = 2.0 * PI * part * sin(PI / f64::from(2 * order));
+        let rate = forgetting(order, part);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and cut off at a million")]
         let pad = (FORGOTTEN / rate).min(1e6).ceil() as usize;
         Ok(Self { sections, pad })
+    }
+
+    /// The least cut-off of an order for a record of so many rows, as a part of the sampling rate: below it, what the ends do not know of the
+    /// time before and after moves the whole record. 0.5 and more where no cut-off will do.
+    pub fn least(order: u32, rows: usize) -> f64 {
+        LEAST_PERIODS.max(NEARLY_FORGOTTEN / forgetting(order, 1.0)) / rows.max(1) as f64
     }
 
     /// The record without what is faster.
@@ -96,6 +106,11 @@ impl Filter {
         }
         all[pad..pad + n].to_vec()
     }
+}
+
+/// By what part, logarithmic, the slowest pole forgets from row to row.
+fn forgetting(order: u32, part: f64) -> f64 {
+    2.0 * PI * part * sin(PI / f64::from(2 * order))
 }
 
 impl Section {
@@ -146,6 +161,24 @@ mod tests {
         turned.reverse();
         assert!(filter.run(&bent).iter().zip(&turned).skip(100).take(100).all(|(a, b)| (a - b).abs() < 1e-4));
         assert!(filter.run(&[]).is_empty() && (filter.run(&[2.0])[0] - 2.0).abs() < 1e-12);
+    }
+
+    /// With the least cut-off a ramp stays where it is to a thousandth of its width, and so do its ends after a wave was taken away; with a
+    /// tenth of it, it leaves the record.
+    #[test]
+    fn from_the_least_cut_off_on_a_record_stays_where_it_is() {
+        for order in 1..=8 {
+            for rows in [40_u32, 200, 1000] {
+                let least = Filter::least(order, rows as usize);
+                let ramp: Vec<f64> = (0..rows).map(|i| f64::from(i) / f64::from(rows - 1)).collect();
+                let off = |part: f64| {
+                    let found = Filter::new(order, part).unwrap().run(&ramp);
+                    found.iter().zip(&ramp).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+                };
+                assert!(least < 0.5 && off(least) < 2e-3, "{order} {rows}: {least} {}", off(least));
+                assert!(order == 1 || off(0.1 * least) > 0.05, "{order} {rows}: {}", off(0.1 * least));
+            }
+        }
     }
 
     #[test]

@@ -4,11 +4,13 @@ use std::ops::Range;
 
 use forcewright_base::maths;
 
-use super::{Loss, Measured};
-use crate::sampling::fisher_tail;
+use super::{Loss, Measured, mad};
+use crate::sampling::{fisher_tail, normal};
 
 /// Chance of each of the two tests to call an error of measuring unexplained.
 const FALSE_ALARM: f64 = 0.005;
+/// The same of each test to call it too regular: what is fitted makes residuals alternate a little, and two curves in one file do so entirely.
+const TOO_REGULAR: f64 = 0.0002;
 /// Intervals of the smooth curve through residuals, at most, and points in each, at least.
 const MOST_INTERVALS: usize = 12;
 const LEAST_POINTS: usize = 8;
@@ -20,12 +22,24 @@ const LEAST_ABOUT: usize = 3;
 const LEAST_DEGREES: f64 = 5.0;
 /// Points beyond parameters from which few runs alone are found.
 const LEAST_ORDER: usize = 12;
+/// Places beyond what the parameters can fit, without which nothing about the shape of a curve shows, however many points there are.
+const LEAST_PLACES: usize = 3;
 /// Residuals on the rarer side from which their order says something: fewer make few runs in any order.
 const LEAST_SIDE: usize = 3;
 /// Degrees of freedom of repeats from which they say what the scatter is.
 const LEAST_REPEATS: usize = 8;
 /// Distance of places that are the same, over the width of all.
 const SAME: f64 = 1e-9;
+/// Residuals beyond so many robust standard deviations are far off, where chance alone does not reach as far.
+const FAR: f64 = 4.0;
+/// Chance, about, of a good measurement to have such a point (tested).
+const FAR_BY_CHANCE: f64 = 0.01;
+/// How much farther it is with few points, times those beyond parameters: a median of few is uncertain itself.
+const FAR_OF_FEW: f64 = 8.0;
+/// Points beyond parameters from which a point is far off the others.
+const LEAST_FOR_FAR: usize = 5;
+/// Rounds of weights by which far points are found.
+const FAR_ROUNDS: usize = 30;
 /// Groups of points between which stretches are looked for, per branch.
 const GROUPS: usize = 300;
 /// What a column has left, over what it had, that others do not say.
@@ -35,12 +49,27 @@ const NEW: f64 = 1e-7;
 /// population", Annals of Mathematical Statistics 11(2), 147–162, 1940.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Runs {
+    /// What was tested.
+    pub test: SignTest,
     /// Stretches of one sign.
     pub observed: usize,
     /// As many as chance makes.
     pub expected: f64,
-    /// Probability of so few by chance; where next to all residuals lie on one side, of so many there, on either (sign test).
+    /// Residuals above and below zero.
+    pub sides: [usize; 2],
+    /// Probability of so few runs by chance; of the sign test, of so many residuals on one side, on either.
     pub p: f64,
+    /// Probability of so many runs by chance: small where signs alternate. 1 of the sign test.
+    pub p_many: f64,
+}
+
+/// What the signs of residuals were tested for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SignTest {
+    /// Whether they come in runs, or alternate.
+    Runs,
+    /// Whether they lie on one side, where too few lie on the other for an order to say anything.
+    Side,
 }
 
 /// What a lack of fit is held against.
@@ -64,6 +93,8 @@ pub struct LackOfFit {
     pub degrees: [f64; 2],
     /// Probability of so large a ratio by chance.
     pub p: f64,
+    /// Probability of so small a ratio by chance: small where residuals make up for each other more evenly than errors do.
+    pub p_small: f64,
 }
 
 /// Neighbouring points that lie on one side, farther than anywhere else.
@@ -98,8 +129,14 @@ pub struct Residuals {
     pub scatter: f64,
     /// Whether a test says that something is not explained, and it is larger than the model is wrong by.
     pub unexplained: bool,
+    /// Whether that is that residuals alternate: two curves in one file, or rows that ring.
+    pub alternates: bool,
     /// Whether the points are enough to tell: if not, nothing unexplained means nothing.
     pub judged: bool,
+    /// Different places at which there are points, branch by branch.
+    pub places: usize,
+    /// Points that lie far off all others, by index, where every point counts the same ([`Loss::Squares`]).
+    pub far: Vec<usize>,
     /// Where most of it is, if so.
     pub stretch: Option<Stretch>,
 }
@@ -125,10 +162,19 @@ impl Residuals {
         let runs = Runs::of(&points.r);
         let lack = points.repeats(&bare, fitted, accuracy).or_else(|| points.smooth(&basis, &bare));
         let lacking = lack.is_some_and(|(l, _)| l.p < FALSE_ALARM);
-        let found = lacking || runs.p < FALSE_ALARM;
+        let regular = lack.filter(|(l, _)| l.p_small < TOO_REGULAR);
+        let bunched = runs.p < FALSE_ALARM;
+        let autocorrelation = autocorrelation(&points.r);
+        let alternating = !lacking && !bunched && (runs.p_many < TOO_REGULAR || regular.is_some());
         let (systematic, scatter) = match lack {
+            // The slow part of what is left is the scatter: the rest alternates about it.
+            _ if alternating => {
+                let all = squares(&points.r) / n;
+                let part = regular.map_or(all * (-autocorrelation).clamp(0.0, 1.0), |(l, within)| (all - within * l.ratio).max(0.0));
+                (part.sqrt(), (all - part).max(0.0).sqrt())
+            }
             // Found, but not in the shape that the other test looks for: then the means of the runs are its size.
-            _ if found && !lacking => of_runs(&points.r),
+            _ if bunched && !lacking => of_runs(&points.r),
             Some((lack, within)) => {
                 // What chance explains is none of it; nor is what parameters that priors or bounds hold take of chance.
                 let bent = lack.degrees[0] * (lack.ratio - 1.0).max(0.0) * within;
@@ -137,11 +183,28 @@ impl Residuals {
             }
             None => (0.0, noise),
         };
-        let unexplained = found && systematic > accuracy;
-        let judged = unexplained || lack.is_some_and(|(l, _)| l.degrees[1] >= LEAST_DEGREES) || points.r.len() >= fitted + LEAST_ORDER;
-        let stretch = if unexplained { points.longest(scatter) } else { None };
-        let autocorrelation = autocorrelation(&points.r);
-        Self { values: raw.to_vec(), runs, autocorrelation, lack: lack.map(|(l, _)| l), systematic, scatter, unexplained, judged, stretch }
+        let unexplained = (lacking || bunched || alternating) && systematic > accuracy;
+        let places = points.groups().count();
+        let enough = lack.is_some_and(|(l, _)| l.degrees[1] >= LEAST_DEGREES) || points.r.len() >= fitted + LEAST_ORDER;
+        let judged = unexplained || (enough && places >= fitted + LEAST_PLACES);
+        let stretch = if unexplained && !alternating { points.longest(scatter) } else { None };
+        let far = if loss == Loss::Squares { points.far(&basis, accuracy) } else { Vec::new() };
+        let alternates = unexplained && alternating;
+        let lack = lack.map(|(l, _)| l);
+        Self {
+            values: raw.to_vec(),
+            runs,
+            autocorrelation,
+            lack,
+            systematic,
+            scatter,
+            unexplained,
+            alternates,
+            judged,
+            places,
+            far,
+            stretch,
+        }
     }
 }
 
@@ -170,14 +233,19 @@ impl Runs {
         let observed = usize::from(!signs.is_empty()) + signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
         let expected = 1.0 + 2.0 * sides[0] as f64 * sides[1] as f64 / n.max(1.0);
         let rarer = sides[0].min(sides[1]);
-        let p = if rarer < LEAST_SIDE { one_sided(signs.len(), rarer) } else { as_few(sides, observed) };
-        Self { observed, expected, p }
+        let (test, p, p_many) = if rarer < LEAST_SIDE {
+            (SignTest::Side, one_sided(signs.len(), rarer), 1.0)
+        } else {
+            let [p, p_many] = of_so_few_and_so_many(sides, observed);
+            (SignTest::Runs, p, p_many)
+        };
+        Self { test, observed, expected, sides, p, p_many }
     }
 }
 
-/// Probability of at most so many runs, with at least one sign on each side: the distribution of Wald & Wolfowitz itself, since the normal
-/// one that it tends to alarms too often where few points lie on one side.
-fn as_few([a, b]: [usize; 2], observed: usize) -> f64 {
+/// Probability of at most and of at least so many runs, with at least one sign on each side: the distribution of Wald & Wolfowitz itself,
+/// since the normal one that it tends to alarms too often where few points lie on one side.
+fn of_so_few_and_so_many([a, b]: [usize; 2], observed: usize) -> [f64; 2] {
     let ways = |n: usize, k: usize| {
         let of = |v: usize| maths::ln_gamma(v as f64 + 1.0);
         if k > n { f64::NEG_INFINITY } else { of(n) - of(k) - of(n - k) }
@@ -189,7 +257,9 @@ fn as_few([a, b]: [usize; 2], observed: usize) -> f64 {
         let part = |x: usize, y: usize| maths::exp(ways(a - 1, x) + ways(b - 1, y) - all);
         if runs.is_multiple_of(2) { 2.0 * part(k - 1, k - 1) } else { part(k, k - 1) + part(k - 1, k) }
     };
-    (2..=observed).map(one).sum::<f64>().min(1.0)
+    // As many as there are: each sign of the rarer side alone, and one run more of the other.
+    let most = 2 * a.min(b) + usize::from(a != b);
+    [(2..=observed).map(one).sum::<f64>().min(1.0), (observed..=most).map(one).sum::<f64>().min(1.0)]
 }
 
 /// Probability that of `n` signs at most `rarer` are the one or the other: the sign test, two-sided.
@@ -211,7 +281,9 @@ impl LackOfFit {
     fn of(against: Against, explained: f64, left: f64, degrees: [f64; 2]) -> Self {
         let ratio = (explained / degrees[0]) / (left / degrees[1]);
         let p = if left > 0.0 { fisher_tail(ratio, degrees[0], degrees[1]) } else { f64::from(u8::from(explained <= 0.0)) };
-        Self { against, ratio, degrees, p }
+        // Its reciprocal has the same distribution with the degrees exchanged; of nothing at all nothing is too small.
+        let p_small = if left > 0.0 && explained > 0.0 { fisher_tail(ratio.recip(), degrees[1], degrees[0]) } else { 1.0 };
+        Self { against, ratio, degrees, p, p_small }
     }
 }
 
@@ -289,6 +361,21 @@ impl Points {
         Self { from, x, r, branches, same }
     }
 
+    /// Points of one branch at one place, by index here.
+    fn groups(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.branches.iter().flat_map(move |own| {
+            let mut from = own.start;
+            std::iter::from_fn(move || {
+                let first = (from < own.end).then_some(from)?;
+                from += 1;
+                while from < own.end && (self.x[from] - self.x[from - 1]).abs() <= self.same {
+                    from += 1;
+                }
+                Some(first..from)
+            })
+        })
+    }
+
     /// Of each branch, piecewise straight lines between places with as many points between any two.
     fn hats(&self) -> Vec<Vec<f64>> {
         let mut all = Vec::new();
@@ -329,20 +416,49 @@ impl Points {
     /// the model is wrong by, since a coarse display or a conversion makes repeats that next to agree.
     fn repeats(&self, bare: &[f64], fitted: usize, accuracy: f64) -> Option<(LackOfFit, f64)> {
         let (mut groups, mut pure) = (0_usize, 0.0);
-        for own in &self.branches {
-            let places: Vec<usize> = own.clone().collect();
-            for group in places.chunk_by(|a, b| (self.x[*a] - self.x[*b]).abs() <= self.same) {
-                let mean = group.iter().map(|i| bare[*i]).sum::<f64>() / group.len() as f64;
-                pure += group.iter().map(|i| bare[*i] - mean).map(|d| d * d).sum::<f64>();
-                groups += 1;
-            }
+        for group in self.groups() {
+            let mean = bare[group.clone()].iter().sum::<f64>() / group.len() as f64;
+            pure += bare[group].iter().map(|r| r - mean).map(|d| d * d).sum::<f64>();
+            groups += 1;
         }
         let again = self.r.len() - groups;
         (again >= LEAST_REPEATS && groups > fitted).then(|| {
             let degrees = [(groups - fitted) as f64, again as f64];
             let left = pure.max(again as f64 * accuracy * accuracy);
-            (LackOfFit::of(Against::Repeats, squares(bare) - pure, left, degrees), left / degrees[1])
+            let mut lack = LackOfFit::of(Against::Repeats, squares(bare) - pure, left, degrees);
+            if left > pure {
+                // A scatter that was not measured is no reason to expect one.
+                lack.p_small = 1.0;
+            }
+            (lack, left / degrees[1])
         })
+    }
+
+    /// Points that lie farther off than errors of the others do, once the tangents are laid through the others: Huber's loss by repeated
+    /// weights, then residuals over their median.
+    fn far(&self, basis: &Basis, accuracy: f64) -> Vec<usize> {
+        let n = self.r.len();
+        let (mut left, mut roots) = (self.r.clone(), vec![1.0; n]);
+        let fitted = basis.count();
+        for _ in 0..FAR_ROUNDS {
+            let scale = mad(&left, fitted).max(f64::MIN_POSITIVE);
+            for (root, r) in roots.iter_mut().zip(&left) {
+                *root = Loss::Huber.weight(r / scale).sqrt();
+            }
+            let mut weighted = Basis::default();
+            for column in &basis.columns {
+                weighted.push(&column.iter().zip(&roots).map(|(c, w)| c * w).collect::<Vec<_>>());
+            }
+            let rest = weighted.rest(&self.r.iter().zip(&roots).map(|(r, w)| r * w).collect::<Vec<_>>());
+            left = rest.iter().zip(&roots).map(|(r, w)| r / w).collect();
+        }
+        let scale = mad(&left, fitted);
+        if n < fitted + LEAST_FOR_FAR || !scale.is_finite() {
+            return Vec::new();
+        }
+        let by_chance = -normal::quantile(0.5 * FAR_BY_CHANCE / n as f64);
+        let most = FAR.max(by_chance) * (1.0 + FAR_OF_FEW / (n - fitted) as f64) * scale;
+        (0..n).filter(|i| left[*i].abs() > most.max(accuracy)).map(|i| self.from[i]).collect()
     }
 
     /// The stretch whose mean lies farthest from 0, over the error of a mean of so many points.

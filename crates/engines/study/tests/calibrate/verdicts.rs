@@ -1,7 +1,7 @@
 //! How often something is called unexplained: in good measurements, in bent ones, and from how many points on.
 
 use forcewright_base::maths::powi;
-use forcewright_study::calibrate::{Against, Fit, Limits, Loss, Measured, Plan, fit};
+use forcewright_study::calibrate::{Against, CalibrateError, Fit, Limits, Loss, Measured, Plan, SignTest, fit};
 use num_dual::{Dual64, DualNum};
 
 use super::common::{Formula, Noise, fitted, free};
@@ -111,6 +111,7 @@ fn what_lies_on_one_side_is_not_explained() {
     let y: Vec<f64> = (0..20).map(|_| 0.5 + 0.05 * noise.normal()).collect();
     let all = held(&y).residuals;
     assert!(all.unexplained && all.judged && (all.runs.p / (2.0 * powi(0.5, 20)) - 1.0).abs() < 1e-12, "{:?}", all.runs);
+    assert!(all.runs.test == SignTest::Side && all.runs.sides == [20, 0], "{:?}", all.runs);
     let mean = y.iter().sum::<f64>() / 20.0;
     assert!((all.systematic - mean).abs() < 1e-9 && (all.scatter / 0.05 - 1.0).abs() < 0.4, "{} {}", all.systematic, all.scatter);
     let stretch = all.stretch.expect("a stretch");
@@ -135,6 +136,8 @@ fn runs_have_the_probabilities_of_all_arrangements() {
         let got = held(&y).residuals.runs;
         let want = counts[..=runs(*bits)].iter().sum::<f64>() / arrangements.len() as f64;
         assert!(got.observed == runs(*bits) && (got.p - want).abs() < 1e-12, "{got:?} {want}");
+        let want = counts[runs(*bits)..].iter().sum::<f64>() / arrangements.len() as f64;
+        assert!(got.test == SignTest::Runs && got.sides == [4, 7] && (got.p_many - want).abs() < 1e-12, "{got:?} {want}");
         assert!((got.expected - (1.0 + 2.0 * 28.0 / 11.0)).abs() < 1e-12);
     }
 }
@@ -189,4 +192,84 @@ fn short_branches_are_judged_by_their_order() {
         let found = fit(&model, &[free(1.0), free(2.0)], measured, &plan(0.0), &mut |_| true).expect("a fit").residuals;
         assert!(found.lack.is_none() && found.judged == judged && !found.unexplained, "{found:?}");
     }
+}
+
+/// Thirteen points at one place or at two, or as many as parameters can fit, show no shape: there is nothing to judge. Drift is found there
+/// all the same.
+#[test]
+fn few_places_are_not_judged() {
+    let slope = |x: f64, p: &[Dual64]| p[0] * x;
+    let at = |places: usize, drift: f64| {
+        let x: Vec<f64> = (0..39).map(|i| 5.0 + (i % places) as f64).collect();
+        let mut noise = Noise(3);
+        let y: Vec<f64> = x.iter().enumerate().map(|(i, x)| 2.0 * x + drift * i as f64 + 0.1 * noise.normal()).collect();
+        fitted(&Formula { x: x.clone(), of: slope }, &[free(1.0)], &x, &y, &plan(1e-4)).residuals
+    };
+    for (places, judged) in [(1, false), (2, false), (3, false), (4, true), (13, true)] {
+        let found = at(places, 0.0);
+        assert!(found.places == places && found.judged == judged && !found.unexplained, "{places}: {found:?}");
+    }
+    let drifting = at(1, 0.05);
+    assert!(drifting.unexplained && drifting.judged && !drifting.alternates, "{drifting:?}");
+}
+
+/// Two curves row by row alternate about the one that is fitted: told, with half their distance, though few runs and a large ratio are far
+/// away. So are two curves that were each measured twice at every place, whose signs do not alternate but whose means lie too well.
+#[test]
+fn two_curves_in_one_file_alternate() {
+    let mut noise = Noise(17);
+    let x = places(44);
+    let model = |x: &[f64]| Formula { x: x.to_vec(), of: line };
+    let y: Vec<f64> =
+        x.iter().enumerate().map(|(i, x)| 1.0 + 2.0 * x + if i % 2 == 0 { 0.3 } else { -0.3 } + 0.05 * noise.normal()).collect();
+    let found = fitted(&model(&x), &[free(1.0), free(2.0)], &x, &y, &plan(1e-4)).residuals;
+    assert!(found.unexplained && found.alternates && found.stretch.is_none(), "{found:?}");
+    assert!(found.runs.observed > 40 && found.runs.p > 0.999 && found.runs.p_many < 1e-6, "{:?}", found.runs);
+    assert!((found.systematic / 0.3 - 1.0).abs() < 0.1 && (0.01..0.15).contains(&found.scatter), "{} {}", found.systematic, found.scatter);
+    let x: Vec<f64> = (0..60).map(|i| f64::from(i / 4)).collect();
+    let y: Vec<f64> =
+        x.iter().enumerate().map(|(i, x)| 1.0 + 2.0 * x + if i % 4 < 2 { 0.3 } else { -0.3 } + 0.02 * noise.normal()).collect();
+    let found = fitted(&model(&x), &[free(1.0), free(2.0)], &x, &y, &plan(1e-4)).residuals;
+    let lack = found.lack.expect("repeats");
+    assert!(lack.against == Against::Repeats && lack.p > 0.99 && lack.p_small < 0.0002 && found.runs.p_many > 0.01, "{found:?}");
+    assert!(found.unexplained && found.alternates && (found.systematic / 0.3 - 1.0).abs() < 0.2, "{found:?}");
+}
+
+/// Good measurements seldom have a point that is called far off, and one that is ten scatters off is found, nearly always alone, also at
+/// the end of a line, which it draws to itself.
+#[test]
+fn far_points_are_found_and_good_ones_are_not() {
+    let far = |n: u32, at: usize, by: f64| -> Vec<Vec<usize>> {
+        let (x, mut noise) = (places(n), Noise(23));
+        let model = Formula { x: x.clone(), of: line };
+        let one = |_| {
+            let mut y: Vec<f64> = x.iter().map(|x| 1.0 + 2.0 * x + noise.normal()).collect();
+            y[at] += by;
+            fitted(&model, &[free(1.0), free(2.0)], &x, &y, &plan(1e-6)).residuals.far
+        };
+        (0..1000).map(one).collect()
+    };
+    for (n, least) in [(8, 0.2), (12, 0.6), (20, 0.9), (60, 0.97), (300, 0.97)] {
+        let good = far(n, 0, 0.0).iter().filter(|f| !f.is_empty()).count();
+        let [end, middle] = [0, n as usize / 2].map(|at| far(n, at, 10.0).iter().filter(|f| **f == [at]).count() as f64 / 1000.0);
+        println!("{n} points: {good} of 1000 good ones, {end} and {middle} found alone");
+        assert!(good <= 20 && middle > least, "{n}: {good} {end} {middle}");
+    }
+    // A loss that plays far points down has weights for them.
+    let x = places(20);
+    let y: Vec<f64> =
+        x.iter().enumerate().map(|(i, x)| 2.0 * x + if i == 7 { 5.0 } else { 0.01 * f64::from(u8::from(i % 3 == 0)) }).collect();
+    let of =
+        |loss| fitted(&Formula { x: x.clone(), of: line }, &[free(1.0), free(2.0)], &x, &y, &Plan { loss, ..plan(1e-6) }).residuals.far;
+    assert!(of(Loss::Squares) == [7] && of(Loss::Tukey).is_empty());
+}
+
+/// A row that is there four times is one: nothing is known of its scatter.
+#[test]
+fn one_row_many_times_is_no_measurement() {
+    let (x, y) = ([1.0; 4], [2.0; 4]);
+    let measured = Measured { x: &x, y: &y, raw: &y, branches: &[4] };
+    let model = Formula { x: x.to_vec(), of: |x: f64, p: &[Dual64]| p[0] * x };
+    let found = fit(&model, &[free(1.0)], measured, &plan(1e-4), &mut |_| true);
+    assert!(matches!(found, Err(CalibrateError::TooFew { points: 1, parameters: 1 })), "{found:?}");
 }
