@@ -147,7 +147,7 @@ pub const CODES: &[Explanation] = &[
     code(
         "E0315",
         "not an objective",
-        "`[optimise]` has one `objective`: `{ minimise = … }` or `{ maximise = … }` with a name that the help lists. Some have one sense only: a deviation is made small, a usable stroke is made large.",
+        "`[optimise]` has one `objective`: `{ minimise = … }` or `{ maximise = … }` with a name of the section Objectives of `docs/reference/<family>-parameters.md`, which `forcewright schema <family> --format markdown` prints. Some have one sense only: a deviation is made small, a usable stroke is made large.",
     ),
     code(
         "E0317",

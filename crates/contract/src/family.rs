@@ -10,6 +10,7 @@ use forcewright_study::task::Task;
 
 use crate::describe::Describe;
 use crate::numbers::{Number, numbers_of};
+use crate::objective::{self, Objectives};
 use crate::project::Project;
 use crate::reproduction::Reproduction;
 use crate::studies::{Free, Purpose, Studies};
@@ -53,6 +54,9 @@ pub trait Mechanism: Sync + 'static {
 
     /// The search that `[optimise]` asks for, over some numbers. What cannot vary, or is no objective, goes into `diagnostics`.
     fn task(spec: &Self::Spec, design: &Self::Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task>;
+
+    /// What `[optimise]` can make small or large.
+    fn objectives() -> &'static [Objectives];
 
     /// What completes a file that has requirements but no design; `None` if the family has no synthesis.
     fn skeleton() -> Option<Skeleton> {
@@ -113,12 +117,14 @@ pub trait Family: Sync {
     fn title(&self) -> &'static str;
     /// JSON schema of its project files.
     fn json_schema(&self) -> serde_json::Value;
-    /// Table of its parameters in Markdown.
+    /// Table of its parameters in Markdown, and of its objectives.
     fn parameter_table(&self) -> String;
     /// Paths of its parameters, members as `*`.
     fn parameter_paths(&self) -> Vec<String>;
     /// Understands a project. Everything wrong is added to its diagnostics; `None` if it cannot be used.
     fn understand(&self, project: &mut Project) -> Option<Box<dyn Understood>>;
+    /// See [`Mechanism::objectives`].
+    fn objectives(&self) -> &'static [Objectives];
     /// See [`Mechanism::skeleton`].
     fn skeleton(&self) -> Option<Skeleton>;
     /// Codes of this family.
@@ -216,7 +222,7 @@ impl<M: Mechanism> Family for Entry<M> {
     }
 
     fn parameter_table(&self) -> String {
-        schema::markdown(&mut M::Spec::default())
+        schema::markdown(&mut M::Spec::default()) + &objective::markdown(M::objectives())
     }
 
     fn parameter_paths(&self) -> Vec<String> {
@@ -235,6 +241,10 @@ impl<M: Mechanism> Family for Entry<M> {
         parameters.retain(|row| !M::studies(&spec).lack(&row.path));
         numbers.retain(|number| !Studies::hold(&number.path));
         Some(Box::new(Ready::<M> { design: design?, spec, parameters, numbers }))
+    }
+
+    fn objectives(&self) -> &'static [Objectives] {
+        M::objectives()
     }
 
     fn skeleton(&self) -> Option<Skeleton> {

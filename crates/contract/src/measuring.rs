@@ -245,5 +245,6 @@ pub fn task<F: Measuring>(
     let sign = if large { -1.0 } else { 1.0 };
     let goal = task::Goal::Values(vec![(place, sign / scale(name))]);
     let title = format!("`{name}` as {} as possible", if large { "large" } else { "small" });
-    Some(Task { evaluator: Box::new(many), title, steps: vec![Step { goal, bands: Vec::new(), held: Vec::new() }], limits })
+    let sought = std::iter::once(name).chain(F::asked(design, name).into_iter().map(|a| a.requirement)).collect();
+    Some(Task { evaluator: Box::new(many), title, steps: vec![Step { goal, bands: Vec::new(), held: Vec::new() }], limits, sought })
 }

@@ -1,5 +1,7 @@
 //! From the words of `[optimise.objective]` to one of the goals that a family has.
 
+use std::fmt::Write as _;
+
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::text::closest;
 
@@ -15,6 +17,49 @@ pub struct Goal {
     pub doc: &'static str,
     /// Which way has a best value.
     pub way: Way,
+}
+
+/// What can be optimised of one kind of design of a family.
+#[derive(Clone, Copy, Debug)]
+pub struct Objectives {
+    /// Designs of this kind, in words; empty where the family has one kind.
+    pub of: &'static str,
+    /// What can be made small or large.
+    pub goals: &'static [Goal],
+}
+
+/// Objectives as a section in Markdown; nothing where there are none.
+pub fn markdown(all: &[Objectives]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut text = "\n## Objectives\n\nWhat `optimise.objective` can make small (`minimise`) or large (`maximise`).\n".to_owned();
+    for Objectives { of, goals } in all {
+        if !of.is_empty() {
+            let _ = write!(text, "\nOf {of}:\n");
+        }
+        text.push_str("\n| objective | sense | meaning |\n| --- | --- | --- |\n");
+        for Goal { name, doc, way } in *goals {
+            let sense = match way {
+                Way::Small => "`minimise`",
+                Way::Large => "`maximise`",
+                Way::Either => "either",
+            };
+            let _ = writeln!(text, "| `{name}` | {sense} | {} |", doc.replace('|', "\\|"));
+        }
+    }
+    text
+}
+
+/// An objective of each kind, as it is written: `objective = { minimise = "mass" }`.
+pub fn advice(all: &[Objectives]) -> String {
+    let one = |Objectives { of, goals }: &Objectives| {
+        let goal = goals.first()?;
+        let sense = if goal.way == Way::Small { "minimise" } else { "maximise" };
+        let kind = if of.is_empty() { String::new() } else { format!(" (of {of})") };
+        Some(format!("`objective = {{ {sense} = \"{}\" }}`{kind}", goal.name))
+    };
+    all.iter().filter_map(one).collect::<Vec<_>>().join(" or ")
 }
 
 /// Which way a goal has a best value.

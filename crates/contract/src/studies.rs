@@ -269,9 +269,12 @@ impl Describe for Optimise {
         );
         v.choice(&Param::new("search", "How designs are searched for.").default("gradient"), SEARCHES, &mut self.search);
         v.count(
-            &Param::new("starts", "With `search = \"gradient\"`: searches, the first from the file, the others spread over the ranges.")
-                .within(1.0, MOST_STARTS)
-                .default("1"),
+            &Param::new(
+                "starts",
+                "With `search = \"gradient\"`: searches, the first from the file, others spread over the ranges, later ones near the best.",
+            )
+            .within(1.0, MOST_STARTS)
+            .default("1"),
             &mut self.starts,
         );
         v.count(
@@ -301,7 +304,10 @@ impl Describe for Optimise {
 
 impl Describe for Objective {
     fn describe(&mut self, v: &mut dyn Visitor) {
-        v.text(&Param::new("minimise", "What is made small: a metric, or an objective of the family."), &mut self.minimise);
+        v.text(
+            &Param::new("minimise", "What is made small: an objective of the family; they are listed below all keys."),
+            &mut self.minimise,
+        );
         v.text(&Param::new("maximise", "What is made large."), &mut self.maximise);
         v.deferred(&Param::new("window", "The stretch of the travel that counts, `[\"from\", \"to\"]`."), &mut self.window);
         v.deferred(&Param::new("target", "The curve to come near to, `[[\"2 mm\", \"5 N\"], …]`."), &mut self.target);

@@ -20,16 +20,18 @@ use rayon::prelude::*;
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_base::units::Unit;
 use forcewright_contract::edit::{self, EditError};
+use forcewright_contract::objective;
 use forcewright_contract::project::{Choices, FileError, Files};
 use forcewright_contract::studies::Purpose;
-use forcewright_model::{CheckState, Report};
+use forcewright_model::{Check, CheckState, Report};
 use forcewright_study::evaluator::Variable;
 use forcewright_study::optimise::{Progress, Reserve, Run, Search, Settings, again, search};
 use forcewright_study::task::{Limit, Task};
 
+use crate::gallery::EXAMPLES;
 use crate::pareto::whole_lists;
 use crate::sweep::Snapshot;
-use crate::{Loaded, Refused};
+use crate::{Loaded, Refused, family};
 
 /// Rounds in which limits are tightened where the full analysis finds them missed by what the search does not see.
 const ROUNDS: usize = 8;
@@ -54,8 +56,10 @@ const CLOSELY_KEPT: f64 = 1e-6;
 /// A violation that a margin can mend.
 const NEARLY_KEPT: f64 = 1e-4;
 
-/// Basins whose best is analysed in full, until one meets all requirements.
-const MOST_BASINS: usize = 8;
+/// A check that is missed by more than this part of its limit, beside others missed by less, is missed because of those: a clutch that slips
+/// has no efficiency. Limits are moved for those first.
+const BESIDE: f64 = 0.2;
+
 /// The least by which the goal of a search must promise to be better than what was kept, relative to that.
 const PROMISING: f64 = 1e-3;
 /// Times that the scatter is looked at, and the change of what it takes, relative to the most, below which limits are at rest.
@@ -91,6 +95,10 @@ pub struct Optimised {
     pub rounded: Option<Rounded>,
     /// The project file with the numbers of the best run and the settings of the command line, comments kept.
     pub text: Option<String>,
+    /// Names of the checks of requirements that the search does not see: the full analysis tells in the end whether they are met.
+    pub unseen: Vec<String>,
+    /// Of each place that a search of the whole range led to the limit that is missed most, and by how much relative to itself.
+    pub place_misses: Vec<Option<(String, f64)>>,
     /// The design of the file.
     pub before: Report,
     /// The design found.
@@ -127,14 +135,18 @@ impl Files for Changed<'_> {
     }
 }
 
-/// Moves the limits that the full analysis found missed inwards, by a little more than that.
-fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate, tighter: f64) {
+/// Moves the limits that the full analysis found missed inwards, by a little more than that; whether there were any.
+fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate, tighter: f64) -> bool {
     let count = task.evaluator.outputs().iter().map(|o| o.values.end).max().unwrap_or(0);
     reserve.limits.resize(count, 0.0);
     reserve.bands.resize(count, 0.0);
     // A flat range at the edge of its band all along falls apart where the band is exceeded by next to nothing.
     let mut narrower = if found.fell() { NARROWER } else { 0.0_f64 };
-    for check in found.report.outcome.checks.iter().filter(|c| c.required && c.state == CheckState::Missed) {
+    let missed = || missed(&found.report).filter(|c| c.state == CheckState::Missed && task.sees(&c.name));
+    let far = |check: &Check| check.margin.is_none_or(|m| -m > BESIDE);
+    let beside = missed().any(|c| !far(c));
+    let mut moved = false;
+    for check in missed().filter(|c| !(beside && far(c))) {
         let by = check.value.zip(check.limit).map_or(0.0, |(value, limit)| (value - limit).abs());
         // A check may be of another quantity than its limit, as a safety factor: of itself both miss as much.
         let relative = check.limit.filter(|limit| limit.abs() > 0.0).map(|limit| by / limit.abs());
@@ -144,6 +156,7 @@ fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate, tighter: f64) 
         let astray = |limit: &Limit| limit.in_band && missed(limit) > BEYOND * limit.scale;
         for limit in own.iter().filter(|limit| !astray(limit)) {
             reserve.limits[limit.values.clone()].iter_mut().for_each(|r| *r += tighter * missed(limit) + LEAST_MOVE * limit.scale);
+            moved = true;
         }
         // The band's own check says by how much it is too wide; a stroke far too short, that it is.
         if check.name == "force" && by <= BEYOND {
@@ -153,6 +166,7 @@ fn tighten(reserve: &mut Reserve, task: &Task, found: &Candidate, tighter: f64) 
         }
     }
     reserve.bands.iter_mut().for_each(|r| *r += narrower);
+    moved || narrower > 0.0 && task.steps.last().is_some_and(|s| !s.bands.is_empty())
 }
 
 /// A design found, as a file and analysed.
@@ -181,20 +195,40 @@ impl Candidate {
         self.goal > self.run.goal + FALLEN * self.run.goal.abs()
     }
 
-    /// Less missed, and of those that miss nothing the better goal.
+    /// Fewer requirements missed; of as many, missed by less; of those that miss nothing the better goal.
     fn beats(&self, other: &Self) -> bool {
-        match (self.met(), other.met()) {
-            (true, true) => self.goal < other.goal,
-            (false, false) => shortfall(&self.report) < shortfall(&other.report),
-            (met, _) => met,
+        let missed = |of: &Self| missed(&of.report).count();
+        match missed(self).cmp(&missed(other)) {
+            std::cmp::Ordering::Equal if missed(self) == 0 => self.goal < other.goal,
+            std::cmp::Ordering::Equal => shortfall(&self.report) < shortfall(&other.report),
+            order => order.is_lt(),
         }
     }
+
+    /// Whether it came nearer than another to what it misses: it misses fewer, or one of them by much less.
+    fn nearer(&self, other: &Self) -> bool {
+        let (now, before) = (missed(&self.report).count(), missed(&other.report).count());
+        let less = |check: &Check| {
+            let then = missed(&other.report).find(|c| c.name == check.name).map(short_of);
+            then.is_some_and(|then| short_of(check) <= NEARER * then)
+        };
+        now < before || now == before && missed(&self.report).any(less)
+    }
+}
+
+/// Requirements that a design misses, or that could not be assessed.
+pub(crate) fn missed(report: &Report) -> impl Iterator<Item = &Check> {
+    report.outcome.checks.iter().filter(|c| c.required && c.state != CheckState::Met)
+}
+
+/// The relative distance by which a requirement is missed; infinite where it could not be assessed.
+fn short_of(check: &Check) -> f64 {
+    check.margin.filter(|_| check.state == CheckState::Missed).map_or(f64::INFINITY, |m| -m)
 }
 
 /// The largest relative distance by which a requirement is missed; infinite where one could not be assessed.
 pub(crate) fn shortfall(report: &Report) -> f64 {
-    let missed = report.outcome.checks.iter().filter(|c| c.required && c.state != CheckState::Met);
-    missed.map(|c| c.margin.filter(|_| c.state == CheckState::Missed).map_or(f64::INFINITY, |m| -m)).fold(0.0, f64::max)
+    missed(report).map(short_of).fold(0.0, f64::max)
 }
 
 impl Loaded {
@@ -207,9 +241,7 @@ impl Loaded {
         let section = &self.understood.studies().optimise;
         if section.present.is_none() {
             diagnostics.push(
-                Diagnostic::error("E0317", self.project.root, "there is no `[optimise]`")
-                    .label("from this file")
-                    .help("add `[optimise]` with `objective = { maximise = \"flat_ratio\" }` and `variables`; `forcewright new optimise-lan-box` has both"),
+                Diagnostic::error("E0317", self.project.root, "there is no `[optimise]`").label("from this file").help(self.how_to_ask()),
             );
             return Err(self.refused(diagnostics));
         }
@@ -220,6 +252,16 @@ impl Loaded {
             Some(task) => Ok((task, diagnostics)),
             None => Err(self.refused(diagnostics)),
         }
+    }
+
+    /// What an `[optimise]` of this family looks like.
+    fn how_to_ask(&self) -> String {
+        let Some(family) = self.project.mechanism().and_then(|(id, _)| family(id)) else { return String::new() };
+        let of_family = format!("{}/", family.id());
+        let example = EXAMPLES.iter().find(|e| e.name.starts_with(&of_family) && e.text.contains("\n[optimise]"));
+        let example =
+            example.and_then(|e| e.name.rsplit('/').next()).map_or_else(String::new, |name| format!("; `forcewright new {name}` has both"));
+        format!("add `[optimise]` with {} and `variables`{example}", objective::advice(family.objectives()))
     }
 
     /// The number of searches that `[optimise]` asks for; 0 where it is as many as a search of the whole range leads to.
@@ -316,13 +358,11 @@ impl Loaded {
             on
         };
         let mut found = search(&task, &settings, &go_on);
-        // The best of each basin, the best first; where no run keeps all limits, the one that misses least.
-        let mut order: Vec<usize> = found.basins.iter().map(|b| b.best).collect();
-        order.truncate(MOST_BASINS);
-        order.extend(found.best.filter(|best| !order.contains(best)));
-        order.retain(|i| !found.runs[*i].goal.is_nan());
+        let order = to_judge(&found);
         let judge = |run: &usize| self.kept((files, target), (&task, &settings), found.runs[*run].clone(), &go_on, &stopped);
-        let mut kept = best_of(&order, &found.runs, &stopped, &judge)?;
+        let judged = best_of(&order, &found.runs, &stopped, &judge)?;
+        found.best = judged.as_ref().map(|(run, _)| *run).or(found.best);
+        let mut kept = judged.map(|(_, candidate)| candidate);
         let mut robustness = None;
         if let Some((found, robust)) = kept.take_if(|_| robust.is_some()).zip(robust) {
             let (found, looked) = self.hardened((files, target), (&task, &settings), (found, robust), &go_on, &stopped)?;
@@ -336,10 +376,13 @@ impl Loaded {
         found.interrupted |= stopped.into_inner();
         let reserve = kept.as_ref().map_or(settings.reserve, |k| k.reserve.clone());
         let (best, text, after) = kept.map_or((None, None, None), |k| (Some(k.run), Some(k.text), Some(k.report)));
+        let places = found.explored.iter().flat_map(|e| &e.places);
         Ok(Optimised {
             title: task.title.clone(),
             units: variables.iter().map(|v| self.unit_of(v, &before)).collect(),
             goal_before: task.goal_at(&nominal),
+            unseen: before.outcome.checks.iter().filter(|c| c.required && !task.sees(&c.name)).map(|c| c.name.clone()).collect(),
+            place_misses: places.map(|p| task.largest_miss(&p.x)).collect(),
             wording,
             variables,
             seed: settings.seed,
@@ -380,7 +423,10 @@ impl Loaded {
             if done || stopped.load(Ordering::Relaxed) || !last.run.feasible(NEARLY_KEPT) {
                 break;
             }
-            tighten(&mut settings.reserve, task, &last, tighter);
+            // What is missed may be none of what the search sees.
+            if !tighten(&mut settings.reserve, task, &last, tighter) {
+                break;
+            }
             tighter *= HARDER;
             let mut next = again(task, &settings, &last.run, go_on);
             if next.goal.is_nan() {
@@ -388,7 +434,7 @@ impl Loaded {
             }
             next.history.splice(0..0, last.run.history);
             last = candidate(next, &settings.reserve)?;
-            let nearer = last.met() || shortfall(&last.report) <= NEARER * shortfall(&best.report);
+            let nearer = last.met() || last.nearer(&best);
             if last.beats(&best) {
                 best = last.clone();
             }
@@ -490,31 +536,46 @@ impl Loaded {
     }
 }
 
-/// The best of what runs lead to, looked at in their order. As many at a time as there are threads; what the order would not have come to
-/// is thrown away, so that their number changes nothing.
+/// The order in which runs are judged by the full analysis: the best of each basin, the best first; the others that keep all limits; then
+/// those that miss least. Which of them meets its requirements only that analysis tells.
+fn to_judge(found: &Search) -> Vec<usize> {
+    let mut order: Vec<usize> = found.basins.iter().map(|b| b.best).collect();
+    let mut others: Vec<usize> = found.basins.iter().flat_map(|b| b.members.iter().copied().filter(|i| *i != b.best)).collect();
+    others.sort_by(|a, b| found.runs[*a].goal.total_cmp(&found.runs[*b].goal).then(a.cmp(b)));
+    order.extend(others);
+    let mut rest: Vec<usize> = (0..found.runs.len()).filter(|i| !order.contains(i)).collect();
+    rest.sort_by(|a, b| found.runs[*a].violation.total_cmp(&found.runs[*b].violation).then(a.cmp(b)));
+    order.extend(rest);
+    order.retain(|i| !found.runs[*i].goal.is_nan());
+    order
+}
+
+/// The best of what runs lead to, looked at in their order until one meets all requirements, with its run. As many at a time as there are
+/// threads; what the order would not have come to is thrown away, so that their number changes nothing.
 fn best_of(
     order: &[usize],
     runs: &[Run],
     stopped: &AtomicBool,
     judge: &(dyn Fn(&usize) -> Result<Candidate, Refused> + Sync),
-) -> Result<Option<Candidate>, Refused> {
-    let mut kept: Option<Candidate> = None;
+) -> Result<Option<(usize, Candidate)>, Refused> {
+    let mut kept: Option<(usize, Candidate)> = None;
     // One that meets all is beaten by none whose search promised hardly more: what the full analysis finds costs the rest.
-    let enough = |kept: &Option<Candidate>, run: usize| {
-        kept.as_ref().is_some_and(|k| k.met() && k.goal <= runs[run].goal + PROMISING * k.goal.abs() || stopped.load(Ordering::Relaxed))
+    let enough = |kept: &Option<(usize, Candidate)>, run: usize| {
+        let promises = |k: &Candidate| runs[run].feasible(NEARLY_KEPT) && k.goal > runs[run].goal + PROMISING * k.goal.abs();
+        kept.as_ref().is_some_and(|(_, k)| k.met() && !promises(k) || stopped.load(Ordering::Relaxed))
     };
     for some in order.chunks(rayon::current_num_threads()) {
-        if enough(&kept, some[0]) {
-            break;
+        if some.iter().all(|run| enough(&kept, *run)) {
+            continue;
         }
         let judged: Vec<Result<Candidate, Refused>> = some.par_iter().map(judge).collect();
         for (run, next) in some.iter().zip(judged) {
             if enough(&kept, *run) {
-                break;
+                continue;
             }
             let next = next?;
-            if kept.as_ref().is_none_or(|k| next.beats(k)) {
-                kept = Some(next);
+            if kept.as_ref().is_none_or(|(_, k)| next.beats(k)) {
+                kept = Some((*run, next));
             }
         }
     }

@@ -13,7 +13,7 @@ use forcewright_contract::edit;
 use forcewright_contract::project::{Choices, Files, Project};
 use forcewright_contract::synthesis::{Judgement, Proposal, Relaxation, Synthesiser};
 use forcewright_contract::tree::{Item, Value};
-use forcewright_model::{Report, StatusKind, StudyTable};
+use forcewright_model::{Check, CheckState, Report, StatusKind, StudyTable};
 use rayon::prelude::*;
 
 use crate::load::asks_for_design;
@@ -80,6 +80,11 @@ impl Designed {
     /// Whether it meets every requirement over its whole travel.
     pub fn met(&self) -> bool {
         self.report.outcome.status.kind == StatusKind::Complete && self.report.outcome.requirements_met()
+    }
+
+    /// Checks of its full analysis that it misses, of requirements or not.
+    pub fn missed(&self) -> impl Iterator<Item = &Check> {
+        self.report.outcome.checks.iter().filter(|c| c.state == CheckState::Missed)
     }
 
     /// The least margin of its requirements, relative; `None` where none has one.

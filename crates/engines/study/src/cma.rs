@@ -11,7 +11,8 @@
 //!   is approached as one inside. An augmented Lagrangian (A. Atamna, A. Auger, N. Hansen, FOGA 2017) in its
 //!   place found fewer of the optima of the tests, to fewer digits.
 //! - *Points without values* are worse than all others.
-//! - *Only the order counts*: any increasing function of the goal leads the same way.
+//! - *Only the order counts* for what is drawn and how the distribution adapts: any increasing function of the goal leads the same way. Where
+//!   it stops does not: tolerances of the goal and of gains are relative differences, which such a function changes.
 //!
 //! Random numbers are drawn by one thread, points are computed by many: the same seed gives the same bits for any number of threads.
 //!
@@ -35,14 +36,16 @@
 //!     }
 //! }
 //!
-//! let found = minimise(&Eggs, &[4.0, -3.0], &Settings::default(), &|_| true);
+//! let found = minimise(&Eggs, &[4.0, -3.0], &Settings::default(), &|_| true)?;
 //! assert!(found.best.is_some_and(|best| best.goal < 1e-8));
+//! # Ok::<(), forcewright_study::cma::CmaError>(())
 //! ```
 
 mod bounds;
 mod strategy;
 
 use std::cmp::Ordering;
+use std::fmt;
 
 use forcewright_base::maths::powf;
 use rayon::prelude::*;
@@ -56,10 +59,68 @@ const TRIES: usize = 100;
 const MOST_EMPTY: usize = 10;
 /// A distribution that has become so much longer diverges, or its first step was far too small: `hansen2016`, appendix B.3.
 const LONGER: f64 = 1e4;
+/// Points of a generation at most, before their number doubles: more than any budget has room for.
+const MOST_POINTS: usize = 1 << 20;
 /// Least small step, `hansen2009`: 0.01 of the first.
 const SMALL_STEP: f64 = -2.0;
 /// Times that the population doubles at most: more than any budget has room for.
 const MOST_DOUBLINGS: usize = 20;
+
+/// Why a problem cannot be searched.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CmaError {
+    /// Lower ends, upper ends and start have different numbers of values.
+    Shape {
+        /// Lower ends.
+        lower: usize,
+        /// Upper ends.
+        upper: usize,
+        /// Values of the start.
+        start: usize,
+    },
+    /// A range is empty, or an end of it is no number, or on its wrong side of all numbers.
+    Range {
+        /// Which variable.
+        variable: usize,
+        /// Its lower end.
+        lower: f64,
+        /// Its upper end.
+        upper: f64,
+    },
+    /// The start of a variable is no finite number.
+    Start {
+        /// Which variable.
+        variable: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The population is too large.
+    Population {
+        /// The number asked for.
+        points: usize,
+    },
+    /// The first step is no finite number above 0.
+    Step {
+        /// The step.
+        step: f64,
+    },
+}
+
+impl fmt::Display for CmaError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shape { lower, upper, start } => {
+                write!(f, "{lower} lower ends, {upper} upper ends and a start of {start} values do not go together")
+            }
+            Self::Range { variable, lower, upper } => write!(f, "the range of variable {variable} from {lower} to {upper} is empty"),
+            Self::Start { variable, value } => write!(f, "variable {variable} starts at {value}"),
+            Self::Population { points } => write!(f, "a generation of {points} points is too large; it has at most {MOST_POINTS}"),
+            Self::Step { step } => write!(f, "the first step is {step}, and must be finite and above 0"),
+        }
+    }
+}
+
+impl std::error::Error for CmaError {}
 
 /// A goal and by how much limits are missed.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,7 +153,7 @@ pub struct Settings {
     pub seed: u64,
     /// First standard deviation, as part of the ranges; of a variable without two ends, of its value at the start. Default 0.3.
     pub step: f64,
-    /// Points of the first generations; 0: 4 + 3 ln n. Restarts have more of them, or fewer.
+    /// Points of the first generations, at most 2²⁰; 0 or 1: 4 + 3 ln n. Restarts have more of them, or fewer.
     pub population: usize,
     /// Restarts with a population twice as large as the one before; those with smaller ones in between are not counted.
     pub restarts: usize,
@@ -241,12 +302,42 @@ pub struct Found {
 
 /// Searches the whole range, the first time from a start, which has a value for each variable; what lies outside of its range is taken at
 /// its end. `watch` sees every generation, and ends the search by returning `false`.
-pub fn minimise(problem: &dyn Problem, start: &[f64], settings: &Settings, watch: &dyn Fn(&Progress) -> bool) -> Found {
+///
+/// # Errors
+/// [`CmaError`] if ranges and start do not go together, a range is empty or an end of it no number, the start is not finite, the population
+/// is too large, or the first step is not finite and above 0.
+pub fn minimise(problem: &dyn Problem, start: &[f64], settings: &Settings, watch: &dyn Fn(&Progress) -> bool) -> Result<Found, CmaError> {
+    check(problem.lower(), problem.upper(), start, settings)?;
     let variables = Boxed::new(problem.lower(), problem.upper(), start);
     let found = Found { best: None, runs: Vec::new(), evaluations: 0, failed: 0, interrupted: false };
     let mut search = Search { problem, settings, watch, variables, random: Random::new(settings.seed), found };
     search.all(start);
-    search.found
+    Ok(search.found)
+}
+
+/// Whether a search makes sense.
+fn check(lower: &[f64], upper: &[f64], start: &[f64], settings: &Settings) -> Result<(), CmaError> {
+    if lower.len() != upper.len() || lower.len() != start.len() {
+        return Err(CmaError::Shape { lower: lower.len(), upper: upper.len(), start: start.len() });
+    }
+    for (variable, ((lower, upper), value)) in lower.iter().zip(upper).zip(start).enumerate() {
+        let (lower, upper, value) = (*lower, *upper, *value);
+        // Neither end may be the other infinity: between them there is no number.
+        let some = lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY;
+        if !some {
+            return Err(CmaError::Range { variable, lower, upper });
+        }
+        if !value.is_finite() {
+            return Err(CmaError::Start { variable, value });
+        }
+    }
+    if settings.population > MOST_POINTS {
+        return Err(CmaError::Population { points: settings.population });
+    }
+    if !(settings.step.is_finite() && settings.step > 0.0) {
+        return Err(CmaError::Step { step: settings.step });
+    }
+    Ok(())
 }
 
 /// The size of a run.
@@ -426,7 +517,10 @@ impl Search<'_> {
         match strategy.worn() {
             Some(Worn::Broken) => Some(Stop::Divergence),
             Some(Worn::NoEffect | Worn::Condition) => Some(Stop::Rounding),
-            None if strategy.longest() > LONGER * launch.step => Some(Stop::Divergence),
+            // Where all goals are equal, steps become longer in search of others.
+            None if strategy.longest() > LONGER * launch.step => {
+                Some(if trend.all_equal(settings.goal_tolerance) { Stop::Goal } else { Stop::Divergence })
+            }
             None if strategy.widest() < settings.step_tolerance => Some(Stop::Step),
             None if trend.level(settings.goal_tolerance) => Some(Stop::Goal),
             None => trend.stagnant().then_some(Stop::Stagnation),
@@ -460,7 +554,15 @@ impl Trend {
     /// Whether the best of the last generations, and all of the last, are equal to a tolerance. Where some of the last miss a limit and the best
     /// do not, as at every optimum on a limit, the best decide.
     fn level(&self, tolerance: f64) -> bool {
-        let count = 10 + (30 * self.n).div_ceil(self.population);
+        self.equal(10 + (30 * self.n).div_ceil(self.population), tolerance)
+    }
+
+    /// The same of all generations.
+    fn all_equal(&self, tolerance: f64) -> bool {
+        self.equal(self.best.len(), tolerance)
+    }
+
+    fn equal(&self, count: usize, tolerance: f64) -> bool {
         let Some(last) = self.best.len().checked_sub(count).map(|from| &self.best[from..]) else { return false };
         let Some(first) = last.first() else { return false };
         let also = if self.worst.excess > 0.0 && first.excess <= 0.0 { first } else { &self.worst };

@@ -21,8 +21,11 @@ const IDLE: f64 = 1e-6;
 const ON_THE_WAY: f64 = 1e-2;
 const MOST_ON_THE_WAY: usize = 10;
 
-/// With so many starts or more, half of them begin near to the best designs that the other half has found …
-const FEWEST_TO_DIVIDE: usize = 8;
+/// A variable is at the end of its range if it is no further from it than this part of it.
+pub const AT_ITS_END: f64 = 1e-6;
+
+/// So many starts are spread over the ranges; of further ones half begin near to the best designs that those before have found …
+const ALL_SPREAD: usize = 4;
 /// … at most so many of them in turn …
 const MOST_CENTRES: usize = 4;
 /// … within this part of the ranges.
@@ -31,8 +34,8 @@ const NEARBY: f64 = 0.3;
 /// What a search is asked for.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Number of starts: the first from the design, the others spread over the ranges by a scrambled Sobol sequence. With
-    /// [`Self::more_starts`] it may be 0.
+    /// Number of starts: the first from the design, the others spread over the ranges by a scrambled Sobol sequence, or near to what those
+    /// before have found. More starts have the same first ones. With [`Self::more_starts`] it may be 0.
     pub starts: usize,
     /// In place of starts spread over the ranges: a search of the whole range, from whose best designs searches go on. The first start is
     /// the design still.
@@ -115,14 +118,27 @@ pub struct Progress {
     pub global: Option<Generation>,
 }
 
+/// What of a design holds the optimum back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hold {
+    /// A requirement.
+    Limit,
+    /// The end of a variable's range.
+    Range,
+    /// The value at which a variable is held, as one that can be had in sizes only.
+    Size,
+}
+
 /// A limit or range that holds the optimum back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Active {
-    /// The limit in words, or the path of the variable at the end of its range.
+    /// What it is.
+    pub hold: Hold,
+    /// The limit in words, or the path of the variable at the end of its range, or held.
     pub name: String,
     /// Key in the project file that relaxes it.
     pub key: String,
-    /// The limit's value, SI.
+    /// The limit's value, or that of the variable, SI.
     pub bound: f64,
     /// Symbol of the SI unit.
     pub unit: &'static str,
@@ -221,12 +237,12 @@ pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bo
         })
     };
     let evaluator = task.evaluator.as_ref();
-    let (starts, later) = all_starts(evaluator, settings, places);
-    let first = starts.len();
-    let mut runs: Vec<Option<Run>> = starts.into_par_iter().enumerate().map(run).collect();
-    // All of the first have ended before any of the others begins, so that the number of threads changes nothing.
-    let later = around_the_best(evaluator, &runs, later, tolerance);
-    runs.par_extend(later.into_par_iter().enumerate().map(|(index, start)| run((first + index, start))));
+    let mut runs: Vec<Option<Run>> = Vec::new();
+    for starts in all_starts(evaluator, settings, places) {
+        // All of those before have ended when these begin, so that the number of threads changes nothing.
+        let (first, starts) = (runs.len(), around_the_best(evaluator, &runs, starts, tolerance));
+        runs.par_extend(starts.into_par_iter().enumerate().map(|(index, start)| run((first + index, start))));
+    }
     let runs: Vec<Run> = runs.into_iter().flatten().collect();
     let feasible: Vec<usize> = (0..runs.len()).filter(|i| runs[*i].feasible(tolerance)).collect();
     let least = |indices: &[usize], of: &dyn Fn(&Run) -> f64| {
@@ -238,18 +254,17 @@ pub fn search(task: &Task, settings: &Settings, watch: &(dyn Fn(&Progress) -> bo
     Search { explored, best, basins, interrupted: interrupted.into_inner(), runs }
 }
 
-/// Starts near to the best designs that were found, in place of others spread over the ranges: as far from them as those lie from the middle
-/// of their range, on a smaller scale. Starts stay what they are where nothing was found.
-fn around_the_best(evaluator: &dyn Evaluator, runs: &[Option<Run>], starts: Vec<Vec<f64>>, tolerance: f64) -> Vec<Vec<f64>> {
-    let found: Vec<Run> = runs.iter().flatten().cloned().collect();
+/// Starts of a round: each with whether it is moved near to what the rounds before have found.
+type Round = Vec<(Vec<f64>, bool)>;
+
+/// The starts of a round; those that are to be near to the best designs that were found in their places: as far from them as those lie from
+/// the middle of their range, on a smaller scale. Starts stay what they are where nothing was found.
+fn around_the_best(evaluator: &dyn Evaluator, runs: &[Option<Run>], starts: Round, tolerance: f64) -> Vec<Vec<f64>> {
+    let found: Vec<&Run> = runs.iter().flatten().collect();
     let feasible = (0..found.len()).filter(|i| found[*i].feasible(tolerance)).collect();
     let mut best = basins(evaluator, &found, feasible);
     best.truncate(MOST_CENTRES);
-    if best.is_empty() {
-        return starts;
-    }
-    let near = |(index, start): (usize, Vec<f64>)| {
-        let centre = &found[best[index % best.len()].best].x;
+    let moved = |start: Vec<f64>, centre: &[f64]| {
         let scattered = |((v, x), own): ((&Variable, f64), &f64)| {
             // What is no number of the design, such as a window, begins where it ended.
             let free = v.path.contains('.') && v.lower.is_finite() && v.upper.is_finite();
@@ -258,7 +273,12 @@ fn around_the_best(evaluator: &dyn Evaluator, runs: &[Option<Run>], starts: Vec<
         };
         evaluator.variables().iter().zip(start).zip(centre).map(scattered).collect()
     };
-    starts.into_iter().enumerate().map(near).collect()
+    let mut centres = best.iter().map(|b| &found[b.best].x).cycle();
+    let start = |(start, near): (Vec<f64>, bool)| match if near { centres.next() } else { None } {
+        Some(centre) => moved(start, centre),
+        None => start,
+    };
+    starts.into_iter().map(start).collect()
 }
 
 /// Searches on from where a run ended, with other settings; only the last step of the task.
@@ -299,20 +319,29 @@ fn kept(settings: &Settings) -> f64 {
     settings.nlp.feasibility.max(1e-6) * 10.0
 }
 
-/// The starts of the settings, the design itself if there are none: those to begin with, and those that may be moved near to what they find.
-fn all_starts(evaluator: &dyn Evaluator, settings: &Settings, places: &[Place]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+/// The starts of the settings in their rounds, the design itself if there are none. Of more starts the first are those of fewer: the fifth
+/// to the eighth are near to the best of those before, as are the later ones of every doubling of their number after that.
+fn all_starts(evaluator: &dyn Evaluator, settings: &Settings, places: &[Place]) -> Vec<Round> {
     let variables = evaluator.variables();
     let more = settings.more_starts.iter().filter(|x| x.len() == variables.len());
-    let mut more = more.map(|x| x.iter().zip(variables).map(|(x, v)| x.max(v.lower).min(v.upper)).collect()).peekable();
+    let more: Vec<Vec<f64>> = more.map(|x| x.iter().zip(variables).map(|(x, v)| x.max(v.lower).min(v.upper)).collect()).collect();
+    let fixed = |starts: Vec<Vec<f64>>| starts.into_iter().map(|start| (start, false)).collect::<Round>();
     if settings.global.is_some() {
         let nominal = variables.iter().map(|v| v.nominal).collect();
-        return (std::iter::once(nominal).chain(places.iter().map(|p| p.x.clone())).chain(more).collect(), Vec::new());
+        return vec![fixed(std::iter::once(nominal).chain(places.iter().map(|p| p.x.clone())).chain(more).collect())];
     }
-    let mut own = if settings.starts == 0 && more.peek().is_some() { Vec::new() } else { starts(evaluator, settings) };
-    let around = if own.len() >= FEWEST_TO_DIVIDE { own.len() / 2 } else { 0 };
-    let later = own.split_off(own.len() - around);
+    let mut own = if settings.starts == 0 && !more.is_empty() { Vec::new() } else { starts(evaluator, settings) };
+    let mut later = own.split_off(own.len().min(ALL_SPREAD));
     own.extend(more);
-    (own, later)
+    let mut rounds = vec![fixed(own)];
+    let (mut near, mut spread) = (ALL_SPREAD, ALL_SPREAD);
+    while !later.is_empty() {
+        let next = later.split_off(later.len().min(near + spread));
+        rounds.push(later.into_iter().enumerate().map(|(index, start)| (start, index < near)).collect());
+        (later, near) = (next, spread);
+        spread *= 2;
+    }
+    rounds
 }
 
 /// The design itself, and points spread over the ranges that are finite.
@@ -405,25 +434,22 @@ fn active(task: &Task, posing: &Posing, solution: &nlp::Solution) -> Vec<Active>
         let bound = if *multiplier > 0.0 { limit.lower } else { limit.upper };
         let relaxed = 0.01 * if bound == 0.0 { 1.0 } else { bound.abs() / limit.scale };
         let gain = multiplier.abs() * relaxed;
-        match found.iter_mut().find(|a| a.key == limit.key && a.bound.to_bits() == bound.to_bits()) {
-            Some(known) => {
-                known.gain += gain;
-                known.places += 1;
-            }
-            None => found.push(Active { name: limit.name.clone(), key: limit.key.clone(), bound, unit: limit.unit, gain, places: 1 }),
+        if let Some(known) = found.iter_mut().find(|a| a.key == limit.key && a.bound.to_bits() == bound.to_bits()) {
+            known.gain += gain;
+            known.places += 1;
+        } else {
+            let (name, key) = (limit.name.clone(), limit.key.clone());
+            found.push(Active { hold: Hold::Limit, name, key, bound, unit: limit.unit, gain, places: 1 });
         }
     }
-    for (variable, multiplier) in task.evaluator.variables().iter().zip(&solution.bound_multipliers) {
-        if *multiplier != 0.0 {
-            let bound = if *multiplier > 0.0 { variable.lower } else { variable.upper };
-            found.push(Active {
-                name: variable.path.clone(),
-                key: variable.path.clone(),
-                bound,
-                unit: variable.unit,
-                gain: 0.01 * multiplier.abs(),
-                places: 1,
-            });
+    let ends = task.evaluator.variables().iter().zip(posing.design(&solution.x)).zip(&solution.bound_multipliers);
+    for (index, ((variable, x), multiplier)) in ends.enumerate().filter(|(_, (_, multiplier))| **multiplier != 0.0) {
+        let end = if *multiplier > 0.0 { variable.lower } else { variable.upper };
+        let (hold, bound) = if posing.holds(index) { (Hold::Size, x) } else { (Hold::Range, end) };
+        // What is estimated of a bound that is not met is no price of it.
+        if (x - bound).abs() <= AT_ITS_END * variable.scale() {
+            let (name, key) = (variable.path.clone(), variable.path.clone());
+            found.push(Active { hold, name, key, bound, unit: variable.unit, gain: 0.01 * multiplier.abs(), places: 1 });
         }
     }
     let most = found.iter().map(|a| a.gain).fold(0.0, f64::max);
@@ -438,11 +464,12 @@ fn near(evaluator: &dyn Evaluator, a: &[f64], b: &[f64]) -> bool {
 }
 
 /// Groups runs by where they ended.
-fn basins(evaluator: &dyn Evaluator, runs: &[Run], mut feasible: Vec<usize>) -> Vec<Basin> {
-    feasible.sort_by(|a, b| runs[*a].goal.total_cmp(&runs[*b].goal).then(a.cmp(b)));
+fn basins<R: std::borrow::Borrow<Run>>(evaluator: &dyn Evaluator, runs: &[R], mut feasible: Vec<usize>) -> Vec<Basin> {
+    let run = |index: usize| -> &Run { runs[index].borrow() };
+    feasible.sort_by(|a, b| run(*a).goal.total_cmp(&run(*b).goal).then(a.cmp(b)));
     let mut basins: Vec<Basin> = Vec::new();
     for index in feasible {
-        match basins.iter_mut().find(|b| near(evaluator, &runs[b.best].x, &runs[index].x)) {
+        match basins.iter_mut().find(|b| near(evaluator, &run(b.best).x, &run(index).x)) {
             Some(basin) => basin.members.push(index),
             None => basins.push(Basin { best: index, members: vec![index] }),
         }

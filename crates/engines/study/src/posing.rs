@@ -90,6 +90,11 @@ impl<'a> Posing<'a> {
         Some(posing)
     }
 
+    /// Whether a variable is held at its value.
+    pub(crate) fn holds(&self, variable: usize) -> bool {
+        self.step.held.contains(&variable)
+    }
+
     fn unknowns(&mut self) {
         for (index, (variable, x)) in self.evaluator.variables().iter().zip(&self.x).enumerate() {
             let (low, high) = (inward(variable, variable.lower), inward(variable, variable.upper));

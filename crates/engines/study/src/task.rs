@@ -36,6 +36,8 @@ pub struct Band {
     pub level: Option<f64>,
     /// The half width; `None` where it is what is minimised.
     pub half_width: Option<f64>,
+    /// Names of the checks that it serves: `force`.
+    pub checks: Vec<&'static str>,
 }
 
 /// What is made small.
@@ -87,6 +89,17 @@ pub struct Task {
     pub steps: Vec<Step>,
     /// The limits, kept in every step.
     pub limits: Vec<Limit>,
+    /// Names of the checks of what the goal itself makes better.
+    pub sought: Vec<&'static str>,
+}
+
+impl Task {
+    /// Whether a check of the full analysis is served by a limit, a band or the goal of the search.
+    pub fn sees(&self, check: &str) -> bool {
+        let bands = self.steps.last().into_iter().flat_map(|s| &s.bands);
+        let served = self.limits.iter().map(|l| &l.checks).chain(bands.map(|b| &b.checks));
+        served.chain([&self.sought]).any(|own| own.contains(&check))
+    }
 }
 
 impl std::fmt::Debug for Task {

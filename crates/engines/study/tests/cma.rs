@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::f64::consts::PI;
 
 use forcewright_base::maths::{cos, powf, powi, sin};
-use forcewright_study::cma::{Assessment, Found, Problem, Settings, Stop, minimise};
+use forcewright_study::cma::{self, Assessment, CmaError, Found, Problem, Progress, Settings, Stop};
 
 type Values<'a> = dyn Fn(&[f64]) -> Option<(f64, Vec<f64>)> + Sync + 'a;
 
@@ -32,6 +32,10 @@ impl Problem for Given<'_> {
 
 fn cube<'a>(n: usize, width: f64, values: &'a Values<'a>) -> Given<'a> {
     Given { lower: vec![-width; n], upper: vec![width; n], values }
+}
+
+fn minimise(problem: &Given, start: &[f64], settings: &Settings, watch: &dyn Fn(&Progress) -> bool) -> Found {
+    cma::minimise(problem, start, settings, watch).unwrap()
 }
 
 fn ellipsoid(x: &[f64]) -> f64 {
@@ -263,4 +267,46 @@ fn it_ends_when_told_to() {
         minimise(&cube(2, 5.0, &sphere), &[3.0; 2], &Settings { patience, restarts: 50, least_gain: 2.0, ..Settings::default() }, &|_| true)
     };
     assert_eq!(patient(4).runs.len(), 5, "nothing is better by twice itself");
+}
+
+/// What makes no sense is refused by its kind, and a range of one point or without an end is none of that.
+#[test]
+fn what_makes_no_sense_is_an_error() {
+    let sphere = |x: &[f64]| Some((x.iter().map(|x| x * x).sum::<f64>(), vec![]));
+    let with = |lower: &[f64], upper: &[f64], start: &[f64], settings: Settings| {
+        let problem = Given { lower: lower.to_vec(), upper: upper.to_vec(), values: &sphere };
+        cma::minimise(&problem, start, &Settings { evaluations: 50, ..settings }, &|_| true).err()
+    };
+    let usual = Settings::default;
+    let (nan, most) = (f64::NAN, f64::INFINITY);
+    assert_eq!(with(&[2.0, -1.0], &[1.0, 1.0], &[0.0; 2], usual()), Some(CmaError::Range { variable: 0, lower: 2.0, upper: 1.0 }));
+    for (lower, upper) in [(nan, 1.0), (0.0, nan), (most, most), (-most, -most)] {
+        let refused = with(&[0.0, lower], &[1.0, upper], &[0.5; 2], usual());
+        assert!(matches!(refused, Some(CmaError::Range { variable: 1, .. })), "{lower} {upper}: {refused:?}");
+    }
+    assert_eq!(with(&[0.0; 3], &[1.0; 3], &[0.5; 2], usual()), Some(CmaError::Shape { lower: 3, upper: 3, start: 2 }));
+    assert_eq!(with(&[0.0; 2], &[1.0; 3], &[0.5; 2], usual()), Some(CmaError::Shape { lower: 2, upper: 3, start: 2 }));
+    assert!(matches!(with(&[0.0], &[1.0], &[nan], usual()), Some(CmaError::Start { variable: 0, .. })));
+    let points = 1 << 63;
+    assert_eq!(with(&[0.0], &[1.0], &[0.5], Settings { population: points, ..usual() }), Some(CmaError::Population { points }));
+    for step in [0.0, -1.0, most, nan] {
+        assert!(matches!(with(&[0.0], &[1.0], &[0.5], Settings { step, ..usual() }), Some(CmaError::Step { .. })), "{step}");
+    }
+    assert_eq!(with(&[1.0, -most, 0.0], &[1.0, most, most], &[4.0, 1.0, 2.0], usual()), None);
+    assert_eq!(with(&[], &[], &[], usual()), None);
+}
+
+/// Where all goals are equal there is nothing to find: that is what the test of goals says, in any number of dimensions.
+#[test]
+fn a_constant_goal_ends_by_its_goal() {
+    let level = |_: &[f64]| Some((7.5, vec![]));
+    for n in [1, 2, 5, 12] {
+        let found = minimise(&cube(n, 5.0, &level), &vec![1.0; n], &Settings { restarts: 0, ..Settings::default() }, &|_| true);
+        assert_eq!(found.runs[0].stop, Stop::Goal, "{n}: {:?}", found.runs[0]);
+    }
+    // A slope without an end is another thing.
+    let slope = |x: &[f64]| Some((x[0] + x[1], vec![]));
+    let endless = Given { lower: vec![f64::NEG_INFINITY; 2], upper: vec![f64::INFINITY; 2], values: &slope };
+    let found = minimise(&endless, &[1.0; 2], &Settings { restarts: 0, ..Settings::default() }, &|_| true);
+    assert_eq!(found.runs[0].stop, Stop::Divergence);
 }

@@ -109,7 +109,7 @@ impl Front {
             format!("from {} the goal goes from {one} to {other}", self.between(*a, *b))
         });
         format!(
-            "Not monotone: {}, against the course of the whole. Either the key does not only loosen a limit, or the better design was not found: try more starts.",
+            "Not monotone: {}, against the course of the whole. Either the key does not only loosen a limit, or the better design was not found: try more starts, or with `search = \"global\"` more `evaluations`.",
             list.collect::<Vec<_>>().join("; ")
         )
     }

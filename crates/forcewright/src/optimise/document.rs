@@ -1,7 +1,7 @@
 //! What an optimisation found, as JSON: values in SI with their units named.
 
 use forcewright_study::nlp::Stop;
-use forcewright_study::optimise::{Active, Run};
+use forcewright_study::optimise::{Active, Hold, Run};
 use serde_json::{Map, Value, json};
 
 use super::{Optimised, Robust, Robustness, pages};
@@ -30,6 +30,7 @@ impl Optimised {
                 "unit": unit.dimension().map_or("1", |d| d.si_symbol()), "before": before, "after": after,
             },
             "met": self.met(),
+            "unseen": self.unseen,
             "search": self.search_document(),
             "variables": variables.collect::<Vec<_>>(),
             "stop": best.map(|b| word(b.stop)),
@@ -60,6 +61,11 @@ impl Optimised {
     fn active(&self, best: &Run, active: &Active) -> Value {
         let now = self.wording.value(best.goal);
         json!({
+            "kind": match active.hold {
+                Hold::Limit => "limit",
+                Hold::Range => "range",
+                Hold::Size => "size",
+            },
             "name": active.name, "key": active.key, "bound": active.bound, "unit": active.unit, "places": active.places,
             "one_percent": self.wording.value(best.goal - active.gain) - now,
         })

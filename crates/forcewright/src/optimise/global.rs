@@ -90,11 +90,9 @@ impl Optimised {
         let rows = found.places.iter().enumerate().map(|(i, place)| {
             // The first search downhill is that from the design of the file.
             let run = self.search.runs.get(i + 1).filter(|r| r.goal.is_finite());
-            let miss = if place.violation > super::NEARLY_KEPT {
-                format!("{} %", format_number(100.0 * place.violation, 2))
-            } else {
-                String::new()
-            };
+            // What the search allows itself is no miss.
+            let miss = self.place_misses.get(i).and_then(Option::as_ref).filter(|_| place.violation > super::NEARLY_KEPT);
+            let miss = miss.map_or_else(String::new, |(name, by)| format!("{name} by {} %", format_number(100.0 * by, 2)));
             vec![
                 (i + 1).to_string(),
                 self.wording.show(place.goal),

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use forcewright_base::units::{Dimension, Unit, format_number, format_si};
 use forcewright_model::{
-    Axis, CheckState, Figure, FigureContent, Item, Look, Plot, Report, Role, Scene, Series, Statement, StatusKind, Stroke, Study,
+    Axis, Check, CheckState, Figure, FigureContent, Item, Look, Plot, Report, Role, Scene, Series, Statement, StatusKind, Stroke, Study,
     StudyColumn, StudyTable,
 };
 use forcewright_study::nlp::Stop;
-use forcewright_study::optimise::{Active, Run};
+use forcewright_study::optimise::{AT_ITS_END, Active, Hold, Run};
 use forcewright_study::sampling::Yield;
 
 use super::{Optimised, Robust, Robustness, Rounded, wording};
@@ -89,6 +89,7 @@ impl Optimised {
             return all;
         };
         all.push(say("Requirements", self.requirements_in_words(best)));
+        all.extend(self.unseen_in_words().map(|text| say("Not seen by the search", text)));
         all.push(say("What limits it", self.limits_in_words(best)));
         all.push(say("How it ended", self.end_in_words(best)));
         all.extend(self.search.explored.as_ref().map(|found| say("Search", self.explored_in_words(found))));
@@ -176,24 +177,51 @@ impl Optimised {
             (all, ..) => {
                 let list = missed.iter().map(|c| {
                     let by = c.margin.map_or_else(String::new, |m| format!(" by {} %", format_number(-100.0 * m, 2)));
-                    format!("{}{by}", c.title)
+                    let unseen = if self.unseen.contains(&c.name) { ", which the search does not see" } else { "" };
+                    format!("{}{by}{unseen}", c.title)
                 });
                 let mut list: Vec<String> = list.collect();
                 if open > 0 {
                     list.push(format!("{open} not assessed"));
                 }
-                format!("{} of {all} are missed: {}.", missed.len() + open, list.join("; "))
+                format!("{} of {all} are missed by the full analysis: {}.", missed.len() + open, list.join("; "))
             }
         };
         if !best.feasible(KEPT) {
-            let largest = "No design was found that keeps every limit: those missed contradict the others within the ranges. This is the \
-                           one that misses least; relax what is missed, widen a range, or try more starts. ";
-            text.insert_str(0, largest);
+            let more = self.more_search();
+            let nearest = format!(
+                "No design was found that keeps every limit of the search: those missed contradict the others within the ranges. This is the one \
+                 that misses least; relax what is missed, widen a range, or try {more}. "
+            );
+            text.insert_str(0, &nearest);
         }
         if status.kind != StatusKind::Complete {
             let _ = write!(text, " Analysis: {}, {}", status.kind.word(), status.message);
         }
         text
+    }
+
+    /// What may find more, of what the search can be given.
+    fn more_search(&self) -> &'static str {
+        if self.search.explored.is_some() { "more `evaluations`, or another `seed`" } else { "more starts" }
+    }
+
+    /// The requirements that were not limits of the search; without those that are met and that the search did not change.
+    fn unseen_checks(&self) -> Vec<&Check> {
+        let report = self.after.as_ref().unwrap_or(&self.before);
+        let bits = |check: &Check| check.value.map(f64::to_bits);
+        let changed = |check: &Check| {
+            let before = self.before.outcome.checks.iter().find(|c| c.name == check.name);
+            check.state != CheckState::Met || before.is_none_or(|b| bits(b) != bits(check))
+        };
+        let own = report.outcome.checks.iter().filter(|c| c.required && self.unseen.contains(&c.name));
+        own.filter(|c| changed(c)).collect()
+    }
+
+    fn unseen_in_words(&self) -> Option<String> {
+        let titles: Vec<&str> = self.unseen_checks().into_iter().map(|c| c.title.as_str()).collect();
+        (!titles.is_empty())
+            .then(|| format!("{}. Only the full analysis of the designs found tells whether they are met.", titles.join("; ")))
     }
 
     pub(crate) fn limits_in_words(&self, best: &Run) -> String {
@@ -208,27 +236,18 @@ impl Optimised {
         if active.is_empty() {
             return "Nothing: the best lies inside all limits and ranges.".to_owned();
         }
-        let ranges: Vec<bool> = active.iter().map(|a| self.is_range(a)).collect();
-        let list = |range: bool| {
-            let names = active.iter().zip(&ranges).filter(|(_, r)| **r == range);
-            names.map(|(a, _)| if range { format!("`{}`", a.name) } else { a.name.clone() }).collect::<Vec<_>>().join(", ")
-        };
+        let named = |a: &Active| if a.hold == Hold::Limit { a.name.clone() } else { format!("`{}`", a.name) };
         let mut text = String::new();
-        if ranges.contains(&false) {
-            text = format!("Limits: {}. ", list(false));
+        for (hold, title) in [(Hold::Limit, "Limits"), (Hold::Range, "Ends of ranges"), (Hold::Size, "Held at their sizes")] {
+            let names: Vec<String> = active.iter().filter(|a| a.hold == hold).map(named).collect();
+            if !names.is_empty() {
+                let _ = write!(text, "{title}: {}. ", names.join(", "));
+            }
         }
-        if ranges.contains(&true) {
-            let _ = write!(text, "Ends of ranges: {}. ", list(true));
+        if let Some(strongest) = active.iter().find(|a| a.hold != Hold::Size) {
+            let _ = write!(text, "Strongest: {}; 1 % more of it leads to {}.", named(strongest), self.relaxed(best, strongest));
         }
-        if let Some(strongest) = active.first() {
-            let _ = write!(
-                text,
-                "Strongest: {}; 1 % more of it leads to {}.",
-                if self.is_range(strongest) { format!("`{}`", strongest.name) } else { strongest.name.clone() },
-                self.relaxed(best, strongest)
-            );
-        }
-        text
+        text.trim_end().to_owned()
     }
 
     /// The goal with a limit relaxed by one per cent, to first order.
@@ -238,11 +257,6 @@ impl Optimised {
         let change = format_si(then - now, unit, 2);
         let sign = if then > now { "+" } else { "" };
         format!("{} ({sign}{change})", self.wording.show(best.goal - active.gain))
-    }
-
-    /// Whether it is the end of a variable's range rather than a limit.
-    fn is_range(&self, active: &Active) -> bool {
-        self.variables.iter().any(|v| v.path == active.key)
     }
 
     fn end_in_words(&self, best: &Run) -> String {
@@ -260,7 +274,8 @@ impl Optimised {
         let runs = self.search.runs.len();
         let kept: usize = self.search.basins.iter().map(|b| b.members.len()).sum();
         let rejected = self.search.runs.iter().filter(|r| r.stop == Stop::StartRejected).count();
-        let mut text = format!("{kept} of {runs} starts led to designs that keep every limit");
+        let limits = if self.unseen_checks().is_empty() { "every limit" } else { "every limit that the search sees" };
+        let mut text = format!("{kept} of {runs} starts led to designs that keep {limits}");
         if let Some(first) = self.search.basins.first() {
             let (count, best) = (self.search.basins.len(), first.members.len());
             let designs = if count == 1 { "1 design".to_owned() } else { format!("{count} different designs") };
@@ -304,14 +319,12 @@ impl Optimised {
         let row = |a: &Active| {
             let own = self.variables.iter().zip(&self.units).find(|(v, _)| v.path == a.key).map(|(_, unit)| unit.clone());
             let unit = own.unwrap_or_else(|| wording::display(a.unit, Some(&self.before.outcome)));
-            let name = if self.is_range(a) { "end of its range".to_owned() } else { a.name.clone() };
-            vec![
-                name,
-                format_si(if self.is_range(a) { a.bound } else { a.bound.abs() }, &unit, 4),
-                a.places.to_string(),
-                self.relaxed(best, a),
-                a.key.clone(),
-            ]
+            let (name, at) = match a.hold {
+                Hold::Limit => (a.name.as_str(), a.bound.abs()),
+                Hold::Range => ("end of its range", a.bound),
+                Hold::Size => ("held at its size", a.bound),
+            };
+            vec![name.to_owned(), format_si(at, &unit, 4), a.places.to_string(), self.relaxed(best, a), a.key.clone()]
         };
         let rows = both_sides(best).iter().map(row).collect();
         Some(StudyTable { caption: "What limits the design, the strongest first; a range by 1 % of its width".to_owned(), columns, rows })
@@ -480,7 +493,7 @@ pub(super) fn ending(stop: Stop) -> &'static str {
 
 /// Which end of its range a variable is at.
 pub(super) fn end_of_range(variable: &forcewright_study::evaluator::Variable, x: f64) -> Option<&'static str> {
-    let near = 1e-6 * variable.scale();
+    let near = AT_ITS_END * variable.scale();
     if x - variable.lower <= near {
         Some("lower")
     } else if variable.upper - x <= near {

@@ -36,6 +36,7 @@ fn design(found: &Designed) -> Value {
     json!({
         "file": found.file, "shape": found.proposal.topology, "title": found.proposal.title, "met": found.met(),
         "room": { "value": found.proposal.cost, "unit": "m^3" }, "parts": found.proposal.parts, "margin": found.margin(),
+        "missed": found.missed().map(|c| json!({ "code": c.code, "name": c.name, "title": c.title, "required": c.required })).collect::<Vec<_>>(),
         "searched": found.searched, "sizes": sizes,
         "result": json::document(&found.report.outcome, &found.report.input_sha256, &found.report.version),
     })

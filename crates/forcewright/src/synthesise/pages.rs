@@ -17,6 +17,7 @@ impl Synthesised {
     pub fn verdict(&self) -> Vec<Statement> {
         let say = |title: &str, text: String| Statement { title: title.to_owned(), text };
         let mut all = vec![say("Synthesis", self.in_one_sentence())];
+        all.extend(self.beyond_in_words().map(|text| say("Beyond the requirements", text)));
         let (confirmed, guessed): (Vec<&Way>, Vec<&Way>) = self.ways.iter().partition(|w| w.confirmed);
         if !confirmed.is_empty() {
             let list: Vec<String> = confirmed.iter().map(|w| in_words(w)).collect();
@@ -58,6 +59,23 @@ impl Synthesised {
         }
     }
 
+    /// The checks that no requirement asks for, and that designs miss.
+    fn beyond_in_words(&self) -> Option<String> {
+        let of = |(i, design): (usize, &Designed)| {
+            let missed = design.missed().filter(|c| !c.required);
+            let titles: Vec<String> = missed.map(|c| format!("{} ({})", short(&c.title), c.code)).collect();
+            let checks = if titles.len() == 1 { "check" } else { "checks" };
+            (!titles.is_empty())
+                .then(|| format!("design {} misses {} {checks} of its full analysis: {}", i + 1, titles.len(), titles.join(", ")))
+        };
+        let all: Vec<String> = self.designs.iter().enumerate().filter_map(of).collect();
+        let mut text = all.join("; ");
+        if let Some(first) = text.get(..1).map(str::to_uppercase) {
+            text.replace_range(..1, &first);
+        }
+        (!all.is_empty()).then(|| format!("{text}. `solve` of their files says what each means and what helps."))
+    }
+
     /// The designs: shape, sizes, key results.
     pub fn table(&self) -> StudyTable {
         let text = |title: &str| StudyColumn::Text(title.to_owned());
@@ -69,6 +87,7 @@ impl Synthesised {
             number("Room taken"),
             number("Least margin"),
             text("Requirements"),
+            text("Checks missed"),
             text("Warnings"),
             StudyColumn::Code("File".to_owned()),
         ]);
@@ -79,6 +98,8 @@ impl Synthesised {
             row.push(d.margin().map_or_else(|| "–".to_owned(), |m| format!("{} %", format_number(100.0 * m, 2))));
             let searched = if d.searched { ", after a search" } else { "" };
             row.push(format!("{}{searched}", if d.met() { "met" } else { "missed" }));
+            let missed: Vec<&str> = d.missed().map(|c| c.code).collect();
+            row.push(if missed.is_empty() { "–".to_owned() } else { format!("{}: {}", missed.len(), missed.join(", ")) });
             row.push(if codes(d).is_empty() { "–".to_owned() } else { codes(d).join(", ") });
             row.push(d.file.clone());
             row
@@ -167,6 +188,11 @@ impl Synthesised {
             content: FigureContent::Plot(plot),
         })
     }
+}
+
+/// The title of a check without the place that it found.
+fn short(title: &str) -> &str {
+    title.split(" (").next().unwrap_or(title)
 }
 
 /// The codes of what a design's analysis warns of, each once.

@@ -38,6 +38,7 @@ pub mod torque;
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism as Family, Progress};
 use forcewright_contract::metrics::results;
+use forcewright_contract::objective::Objectives;
 use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose as StudyPurpose, Studies};
 use forcewright_contract::synthesis::{Skeleton, Synthesiser};
@@ -138,6 +139,10 @@ impl Family for Cam {
 
     fn synthesiser(spec: &Spec, design: &Kind, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
         synthesis::synthesiser(spec, torque::no_disc(spec, design, diagnostics)?, diagnostics)
+    }
+
+    fn objectives() -> &'static [Objectives] {
+        study::OBJECTIVES
     }
 
     fn explanations() -> &'static [Explanation] {

@@ -6,6 +6,7 @@ mod sensitivity;
 pub(crate) mod task;
 
 use forcewright_base::diagnostics::Diagnostics;
+use forcewright_contract::objective::Objectives;
 use forcewright_contract::studies::{Free, Purpose};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -14,6 +15,10 @@ use crate::design::Design;
 use crate::spec::Spec;
 use knobs::Knobs;
 use many::Many;
+
+/// What can be optimised.
+pub(crate) const OBJECTIVES: &[Objectives] =
+    &[Objectives { of: "cams with a slider", goals: task::FORCE.goals }, Objectives { of: "torque cams", goals: task::TORQUE.goals }];
 
 pub(crate) use sensitivity::Scatter;
 

@@ -25,8 +25,9 @@ mod whole;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress};
-use forcewright_contract::measuring::{self, Many};
+use forcewright_contract::measuring::{self, Many, Measuring};
 use forcewright_contract::metrics::results;
+use forcewright_contract::objective::Objectives;
 use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose, Studies};
 use forcewright_contract::synthesis::{Skeleton, Synthesiser};
@@ -107,6 +108,10 @@ impl Mechanism for Capstan {
 
     fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
         synthesis::synthesiser(spec, design, diagnostics)
+    }
+
+    fn objectives() -> &'static [Objectives] {
+        &[Objectives { of: "", goals: CableDrives::OBJECTIVES }]
     }
 
     fn explanations() -> &'static [Explanation] {

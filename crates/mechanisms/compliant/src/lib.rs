@@ -35,6 +35,7 @@ mod synthesis;
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress};
 use forcewright_contract::metrics::results;
+use forcewright_contract::objective::Objectives;
 use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose, Studies};
 use forcewright_contract::synthesis::{Skeleton, Synthesiser};
@@ -136,6 +137,10 @@ impl Mechanism for Compliant {
 
     fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
         synthesis::synthesiser(spec, design, diagnostics)
+    }
+
+    fn objectives() -> &'static [Objectives] {
+        study::OBJECTIVES
     }
 
     fn explanations() -> &'static [Explanation] {

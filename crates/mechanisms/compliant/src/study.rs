@@ -10,6 +10,7 @@ mod task;
 use forcewright_base::diagnostics::{Diagnostic, Diagnostics};
 use forcewright_beam::Drive;
 use forcewright_contract::describe::Origin;
+use forcewright_contract::objective::Objectives;
 use forcewright_contract::studies::{Free, Purpose};
 use forcewright_study::evaluator::Evaluator;
 use forcewright_study::task::Task;
@@ -18,6 +19,9 @@ use crate::design::Design;
 use crate::spec::Spec;
 use knobs::Knobs;
 use scatter::Scatter;
+
+/// What can be optimised.
+pub(crate) const OBJECTIVES: &[Objectives] = &[Objectives { of: "", goals: task::OBJECTIVES }];
 
 /// The design as studies that look at many see it.
 pub(crate) fn evaluator(spec: &Spec, design: &Design, free: &[Free], diagnostics: &mut Diagnostics) -> Option<Box<dyn Evaluator>> {
@@ -37,9 +41,7 @@ fn given(spec: &Spec) -> Option<f64> {
 pub(crate) fn task(spec: &Spec, design: &Design, free: &[Free], purpose: Purpose, diagnostics: &mut Diagnostics) -> Option<Task> {
     check_drive(spec, design, diagnostics)?;
     let knobs = Knobs::new(spec, design, free, purpose, diagnostics)?;
-    let place = spec.studies.optimise.present.as_ref().map(|p| p.span).unwrap_or_default();
-    say_what_is_left(&task::not_kept(design), "is not seen by the search; it is checked at the end", place, diagnostics);
-    task::task(design, knobs, (&spec.studies.optimise.objective, given(spec)), diagnostics)
+    task::task(design, knobs, (&spec.studies.optimise, given(spec)), diagnostics)
 }
 
 /// Studies look at forces over a prescribed displacement from rest.

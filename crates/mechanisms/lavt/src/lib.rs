@@ -26,8 +26,9 @@ mod synthesis;
 
 use forcewright_base::diagnostics::{Diagnostics, Explanation};
 use forcewright_contract::family::{Analysis, Mechanism, Progress};
-use forcewright_contract::measuring::{self, Many};
+use forcewright_contract::measuring::{self, Many, Measuring};
 use forcewright_contract::metrics::results;
+use forcewright_contract::objective::Objectives;
 use forcewright_contract::reproduction::Reproduction;
 use forcewright_contract::studies::{Free, Purpose, Studies};
 use forcewright_contract::synthesis::{Skeleton, Synthesiser};
@@ -122,6 +123,10 @@ impl Mechanism for Lavt {
 
     fn synthesiser(spec: &Spec, design: &Design, diagnostics: &mut Diagnostics) -> Option<Box<dyn Synthesiser>> {
         synthesis::synthesiser(spec, design, diagnostics)
+    }
+
+    fn objectives() -> &'static [Objectives] {
+        &[Objectives { of: "", goals: Transmissions::OBJECTIVES }]
     }
 
     fn explanations() -> &'static [Explanation] {

@@ -155,6 +155,31 @@ impl cma::Problem for Whole<'_> {
     }
 }
 
+impl Task {
+    /// The limit or band that a design misses most, by the name of the limit or of the band's check, and by how much: relative to the limit
+    /// itself, or to what is a large change of it where it is zero; to the half width of a band. `None` where nothing is missed, or there are
+    /// no values.
+    pub fn largest_miss(&self, x: &[f64]) -> Option<(String, f64)> {
+        let (step, reserve) = (self.steps.last()?, Reserve::default());
+        let whole = Whole::new(self, step, &reserve);
+        let mut found = Evaluation::default();
+        self.evaluator.evaluate(x, false, &mut found, &mut self.evaluator.workspace()).ok()?;
+        let limits = self.limits.iter().map(|limit| {
+            let size = |bound: f64| if bound.abs() > 0.0 { bound.abs() } else { limit.scale };
+            let miss = |v: &f64| ((limit.lower - v) / size(limit.lower)).max((v - limit.upper) / size(limit.upper));
+            // A side without a limit is infinitely far away: ∞/∞ is no number, and no miss.
+            let values = found.values.get(limit.values.clone()).unwrap_or_default();
+            (limit.name.clone(), values.iter().map(miss).fold(0.0, f64::max))
+        });
+        let bands = step.bands.iter().filter_map(|band| {
+            let half = band.half_width?;
+            let name = band.checks.first().copied().unwrap_or("band");
+            Some((name.to_owned(), (whole.deviation(band, &found.values) - half) / half))
+        });
+        limits.chain(bands).filter(|(_, miss)| *miss > 0.0).reduce(|most, next| if next.1 > most.1 { next } else { most })
+    }
+}
+
 /// The goal of a task at a design, and the largest violation, as the search of the whole range sees them.
 #[cfg(test)]
 pub(super) fn standing(task: &Task, x: &[f64]) -> Option<(f64, f64)> {
@@ -182,7 +207,8 @@ pub(super) fn explore(task: &Task, settings: &Settings, asked: Global, go_on: &d
         let global = Some(Generation { run: p.run, evaluations: p.evaluations });
         go_on(&Progress { start: 0, step: task.steps.len() - 1, iteration: p.generation, goal, violation, global })
     };
-    let found = cma::minimise(&problem, &nominal, &own, &watch);
+    // Ranges that make no sense are for the search by gradients to tell, which calls them malformed.
+    let found = cma::minimise(&problem, &nominal, &own, &watch).ok()?;
     let mut ends: Vec<(usize, &cma::Point)> = found.runs.iter().enumerate().filter_map(|(i, r)| Some((i, r.best.as_ref()?))).collect();
     ends.sort_by(|a, b| a.1.compare(b.1).then(a.0.cmp(&b.0)));
     let mut places: Vec<Place> = Vec::new();

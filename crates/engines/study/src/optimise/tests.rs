@@ -1,4 +1,4 @@
-use super::{Global, NEARBY, Progress, Reserve, Search, Settings, search};
+use super::{Global, Hold, NEARBY, Progress, Reserve, Search, Settings, search};
 use crate::evaluator::{Evaluation, Evaluator, Failure, Measure, Output, Variable, Workspace};
 use crate::posing::Posing;
 use crate::task::{Band, Goal, Limit, Step, Task};
@@ -68,6 +68,7 @@ fn well(smooth: bool) -> Task {
         title: "the deepest well".to_owned(),
         steps: vec![Step { goal: Goal::Values(vec![(0, 1.0)]), bands: Vec::new(), held: Vec::new() }],
         limits: vec![limit(0..2), limit(2..3)],
+        sought: Vec::new(),
     }
 }
 
@@ -98,12 +99,18 @@ fn half_of_the_starts_begin_near_the_best_of_the_others() {
     assert_eq!(search.runs.len(), 16);
     let ends: Vec<f64> = search.basins.iter().map(|b| search.runs[b.best].x[0]).collect();
     assert!(ends.len() == 2 && (ends[0] + 1.024).abs() < 1e-2 && (ends[1] - 0.974).abs() < 1e-2, "{ends:?}");
-    for (index, run) in search.runs[8..].iter().enumerate() {
-        let off = (run.start[0] - ends[index % 2]).abs();
+    for run in search.runs[4..8].iter().chain(&search.runs[12..]) {
+        let off = ends.iter().map(|end| (run.start[0] - end).abs()).fold(f64::INFINITY, f64::min);
         assert!(off > 0.0 && off <= NEARBY * 2.0 + 1e-2, "{} is {off} away", run.start[0]);
     }
+    // More starts have the same first ones, whose ends they have too.
+    let all = found(60, Vec::new());
+    let course = |search: &Search, count: usize| search.runs[..count].iter().map(|r| (r.start.clone(), r.x.clone())).collect::<Vec<_>>();
+    for few in [1, 5, 8, 9, 15, 16, 20, 24, 31, 50] {
+        assert_eq!(course(&found(few, Vec::new()), few), course(&all, few), "{few}");
+    }
     // With few starts all are spread over the range.
-    let few = found(7, Vec::new());
+    let few = found(4, Vec::new());
     assert!(few.runs.iter().zip(&search.runs).all(|(few, many)| few.start == many.start));
 }
 
@@ -185,7 +192,7 @@ fn an_interrupted_search_of_the_whole_range_keeps_the_best() {
 #[test]
 fn what_follows_from_values_is_not_searched_for() {
     let mut task = task();
-    let band = |level, half_width| Band { values: 0..3, level, half_width };
+    let band = |level, half_width| Band { values: 0..3, level, half_width, checks: Vec::new() };
     task.limits.clear();
     for (goal, bands) in [
         (Goal::HalfWidth, vec![band(None, None)]),
@@ -208,4 +215,27 @@ fn what_follows_from_values_is_not_searched_for() {
     task.steps = vec![Step { goal: Goal::HalfWidth, bands: vec![band(None, None)], held: Vec::new() }];
     let goals: Vec<f64> = [-0.3, -0.6, -0.9, -1.2].iter().map(|x| super::global::standing(&task, &[*x]).expect("values").0).collect();
     assert!(goals.iter().all(|g| g.is_finite() && *g > 1.0), "{goals:?}");
+}
+
+/// A bound is said to hold a design back only where the design is at it; a variable that a step holds is held, not at an end.
+#[test]
+fn only_ends_that_are_met_are_named() {
+    let mut task = task();
+    task.limits.clear();
+    // Down a slope the end of the range holds it back.
+    task.steps = vec![Step { goal: Goal::Values(vec![(1, 1.0)]), bands: Vec::new(), held: Vec::new() }];
+    let found = |task: &Task, limit: usize| {
+        let nlp = crate::nlp::Settings { iteration_limit: limit, ..Settings::default().nlp };
+        search(task, &Settings { nlp, ..Settings::default() }, &|_| true).runs.remove(0)
+    };
+    let ended = found(&task, 50);
+    assert!((ended.x[0] + 2.0).abs() < 1e-9 && ended.active.len() == 1, "{ended:?}");
+    assert!(ended.active[0].hold == Hold::Range && (ended.active[0].bound + 2.0).abs() < 1e-12);
+    // Where it began, far from any end, none does, although multipliers are estimated there too.
+    let begun = found(&task, 0);
+    assert!((begun.x[0] - 1.5).abs() < 1e-12 && begun.active.is_empty(), "{begun:?}");
+    task.steps[0].held = vec![0];
+    let held = found(&task, 50);
+    assert!((held.x[0] - 1.5).abs() < 1e-12 && held.active.len() == 1, "{held:?}");
+    assert!(held.active[0].hold == Hold::Size && (held.active[0].bound - 1.5).abs() < 1e-12);
 }

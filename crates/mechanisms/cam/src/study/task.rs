@@ -17,7 +17,7 @@ pub(crate) struct Words {
     /// Before `_deviation`, `_spread`; also the requirement.
     quantity: &'static str,
     unit: &'static str,
-    goals: &'static [Goal],
+    pub(crate) goals: &'static [Goal],
     /// Advice for an objective that has keys of its own.
     elsewhere: &'static str,
     /// Advice where nothing is required.
@@ -113,7 +113,21 @@ pub(crate) fn task(
     let limits = posed.limits(name);
     let (goal, bands) = posed.goal(name);
     let title = format!("`{name}` as small as possible");
-    Some(Task { evaluator, title, steps: vec![Step { goal, bands, held: Vec::new() }], limits })
+    Some(Task { evaluator, title, steps: vec![Step { goal, bands, held: Vec::new() }], limits, sought: sought(name) })
+}
+
+/// Requirements with checks of their own.
+const REQUIREMENTS: [&str; 7] = ["force", "torque", "hysteresis", "spring_length", "spring_solid", "contact", "contact_motion"];
+
+/// The requirement that a goal itself is about.
+fn sought(name: &'static str) -> Vec<&'static str> {
+    let typed = match name {
+        "force_deviation" => "force",
+        "torque_deviation" => "torque",
+        "spring_length_max" => "spring_length",
+        other => other,
+    };
+    if typed == name { vec![name] } else { vec![name, typed] }
 }
 
 /// A search that is being posed.
@@ -141,7 +155,8 @@ impl Posed<'_> {
     }
 
     fn goal(&self, name: &str) -> (task::Goal, Vec<Band>) {
-        let both = |level: Option<f64>| [0, 1].map(|i| Band { values: i * STATIONS..(i + 1) * STATIONS, level, half_width: None }).to_vec();
+        let band = |values, level| Band { values, level, half_width: None, checks: Vec::new() };
+        let both = |level: Option<f64>| [0, 1].map(|i| band(i * STATIONS..(i + 1) * STATIONS, level)).to_vec();
         let wanted = self.wanted;
         let mean = wanted.iter().sum::<f64>() / wanted.len() as f64;
         match name {
@@ -153,10 +168,7 @@ impl Posed<'_> {
                 let targets = wanted.iter().chain(wanted).copied().collect();
                 (task::Goal::Squares { values: 0..2 * STATIONS, targets, scale: mean }, Vec::new())
             }
-            "force_spread" | "torque_spread" => {
-                let values = 0..2 * STATIONS;
-                (task::Goal::HalfWidth, vec![Band { values, level: None, half_width: None }])
-            }
+            "force_spread" | "torque_spread" => (task::Goal::HalfWidth, vec![band(0..2 * STATIONS, None)]),
             // (Mean up − mean down) over the level wanted: Simpson's weights.
             "hysteresis" => {
                 let one = |i: usize, sign: f64| sign * simpson_weight(i, STATIONS) / mean;
@@ -186,11 +198,13 @@ impl Posed<'_> {
                 "contact" | "contact_motion" => "design.springs".to_owned(),
                 name => format!("requirements.limits.{name}"),
             };
-            let checks = METRICS.iter().find(|m| m.name == measure.name).map(|m| m.name);
+            // A check is called after its requirement, or after the metric that is limited by name.
+            let typed = REQUIREMENTS.into_iter().filter(|name| *name == measure.requirement);
+            let checks: Vec<&'static str> = METRICS.iter().filter(|m| m.name == measure.name).map(|m| m.name).chain(typed).collect();
             let limit = |values: std::ops::Range<usize>, lower: f64, upper: f64, scale: f64, unit| Limit {
                 name: measure.requirement.clone(),
                 key: key.clone(),
-                checks: checks.into_iter().collect(),
+                checks: checks.clone(),
                 values,
                 lower,
                 upper,

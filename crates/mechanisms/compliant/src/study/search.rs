@@ -46,10 +46,10 @@ pub(super) enum Edge {
 pub(super) enum Block {
     /// Stiffness at even steps of the travel, N/m.
     Slopes,
-    /// Largest and least force between each two neighbouring nodes of the window, N.
-    Window,
-    /// Length of the window, m.
-    WindowLength,
+    /// Largest and least force between each two neighbouring nodes of a window, by its index, N.
+    Window(usize),
+    /// Length of a window, m.
+    WindowLength(usize),
     /// Forces at displacements of its own, N.
     Forces(Vec<f64>),
     /// F(a)/F(b) − 1 at the displacements a and b.
@@ -84,7 +84,7 @@ pub(super) struct Search {
     settings: Settings,
     copies: f64,
     travel_m: f64,
-    window: Option<[Edge; 2]>,
+    windows: Vec<[Edge; 2]>,
     blocks: Vec<Block>,
     outputs: Vec<Output>,
     /// Per node and axis: whether the search does not move it along that axis, and whether the load does not either.
@@ -134,7 +134,7 @@ impl Search {
             copies: design.copies(),
             travel_m: design.load_end,
             variables,
-            window: wanted.window,
+            windows: wanted.windows.clone(),
             outputs: Vec::new(),
             still: still(&design.network, &knobs),
             knobs,
@@ -153,8 +153,8 @@ impl Search {
         let beams = self.base.beams.len();
         match block {
             Block::Slopes => ("stiffness", "N/m", CELLS),
-            Block::Window => ("window force", "N", 2 * (WINDOW - 1)),
-            Block::WindowLength => ("window length", "m", 1),
+            Block::Window(_) => ("window force", "N", 2 * (WINDOW - 1)),
+            Block::WindowLength(_) => ("window length", "m", 1),
             Block::Forces(at) => ("force", "N", at.len()),
             Block::ForceRatio(_) => ("force ratio", "1", 1),
             Block::Stress => ("stress", "Pa", self.faces().len() * beams * (PLACES + 1) * STATES.len()),
@@ -182,9 +182,9 @@ impl Search {
         index.and_then(|i| self.outputs.get(i)).map_or(0..0, |o| o.values.clone())
     }
 
-    /// A displacement of the window, m, and its derivatives by the two edges.
-    fn place_in_window(&self, x: &[f64], index: usize) -> (f64, [(Option<usize>, f64); 2]) {
-        let Some(edges) = self.window else { return (0.0, [(None, 0.0); 2]) };
+    /// A displacement of a window, m, and its derivatives by the two edges.
+    fn place_in_window(&self, x: &[f64], window: usize, index: usize) -> (f64, [(Option<usize>, f64); 2]) {
+        let Some(edges) = self.windows.get(window).copied() else { return (0.0, [(None, 0.0); 2]) };
         let part = 0.5 * (1.0 - maths::cos(std::f64::consts::PI * index as f64 / (WINDOW - 1) as f64));
         let own = self.knobs.variables.len();
         let [start, end] = edges.map(|edge| match edge {
@@ -215,7 +215,7 @@ impl Search {
         for block in &self.blocks {
             match block {
                 Block::Slopes => out.extend((1..CELLS).map(|i| self.step_m(i))),
-                Block::Window => out.extend((0..WINDOW).map(|i| self.place_in_window(x, i).0)),
+                Block::Window(window) => out.extend((0..WINDOW).map(|i| self.place_in_window(x, *window, i).0)),
                 Block::Forces(at) => out.extend(at),
                 Block::ForceRatio(at) => out.extend(at),
                 _ => {}

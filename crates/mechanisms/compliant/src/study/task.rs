@@ -7,20 +7,21 @@ use forcewright_contract::describe::{Located, Section};
 use forcewright_contract::metrics;
 use forcewright_contract::objective::{Goal, Way, goal_of};
 use forcewright_contract::read::deferred_quantities;
-use forcewright_contract::studies::Objective;
+use forcewright_contract::studies::{Objective, Optimise};
 use forcewright_contract::tree::{Item, Value};
 use forcewright_study::evaluator::Variable;
 use forcewright_study::task::{self, Band, Limit, Step, Task};
 
 use super::knobs::Knobs;
 use super::mass;
+use super::say_what_is_left;
 use super::search::{Block, Edge, Search};
 use crate::analysis::{PAPER_BAND, mass_kg};
 use crate::design::{Design, Requirements};
 use crate::metrics::CompliantMetrics;
 
 /// What can be optimised, with what it means.
-const OBJECTIVES: &[Goal] = &[
+pub(super) const OBJECTIVES: &[Goal] = &[
     Goal {
         name: "force_deviation",
         doc: "half width of the band that the force needs over `window`, or over the best stroke of `requirements.travel`",
@@ -49,26 +50,31 @@ struct Posed {
     before: Option<(task::Goal, Vec<Band>)>,
 }
 
-/// Builds the task; what is wrong with the objective is reported. `given` is the accuracy that the file asks for.
+/// Builds the task; what is wrong with the objective is reported, and what the search does not see. `given` is the accuracy that the file
+/// asks for.
 pub(crate) fn task(
     design: &Design,
     knobs: Knobs,
-    (objective, given): (&Section<Objective>, Option<f64>),
+    (asked, given): (&Section<Optimise>, Option<f64>),
     diagnostics: &mut Diagnostics,
 ) -> Option<Task> {
+    let objective = &asked.objective;
     let (name, large) = goal_of(objective, OBJECTIVES, diagnostics)?;
     let wanted = Wanted::new(design, name, objective, diagnostics)?;
+    let place = asked.present.as_ref().map(|p| p.span).unwrap_or_default();
+    say_what_is_left(&wanted.not_kept(design), "is not seen by the search; it is checked at the end", place, diagnostics);
     let search = Search::new(design, knobs, given, &wanted);
     let limits = limits(design, &search, &wanted);
     let posed = wanted.pose(design, &search, large);
-    let own = search.knobs.variables.len()..search.knobs.variables.len() + wanted.variables.len();
+    // The window of the objective comes first among the variables that are no numbers of the design.
+    let own = search.knobs.variables.len()..search.knobs.variables.len() + 2;
     let mut steps = Vec::new();
     if let Some((goal, bands)) = posed.before {
         steps.push(Step { goal, bands, held: own.collect() });
     }
     steps.push(Step { goal: posed.goal, bands: posed.bands, held: Vec::new() });
     let title = format!("`{name}` as {} as possible", if large { "large" } else { "small" });
-    Some(Task { evaluator: Box::new(search), title, steps, limits })
+    Some(Task { evaluator: Box::new(search), title, steps, limits, sought: sought(name) })
 }
 
 /// What the evaluator must compute for an objective and the requirements.
@@ -76,21 +82,29 @@ pub(super) struct Wanted {
     name: &'static str,
     /// Beside the numbers of the design.
     pub(super) variables: Vec<Variable>,
-    pub(super) window: Option<[Edge; 2]>,
+    pub(super) windows: Vec<[Edge; 2]>,
+    /// The window of the objective, by its index.
+    own: Option<usize>,
+    /// That of the required stroke, in which the force stays inside the required band: the same, or another.
+    required: Option<usize>,
     pub(super) blocks: Vec<Block>,
     target_n: Vec<f64>,
 }
 
 impl Wanted {
     fn new(design: &Design, name: &'static str, objective: &Section<Objective>, diagnostics: &mut Diagnostics) -> Option<Self> {
-        let mut wanted = Self { name, variables: Vec::new(), window: None, blocks: Vec::new(), target_n: Vec::new() };
+        let mut wanted =
+            Self { name, variables: Vec::new(), windows: Vec::new(), own: None, required: None, blocks: Vec::new(), target_n: Vec::new() };
         let requirements = design.requirements.as_ref();
         let typed = match &objective.window {
             None => None,
             Some(slot) => Some(window(slot, design, diagnostics)?),
         };
         match (name, typed) {
-            ("force_deviation", Some([start, end])) => wanted.window = Some([Edge::Fixed(start), Edge::Fixed(end)]),
+            ("force_deviation", Some(window)) => {
+                wanted.windows.push(window.map(Edge::Fixed));
+                wanted.own = Some(0);
+            }
             ("force_ratio", Some([b, a])) if b > 0.0 => wanted.blocks.push(Block::ForceRatio([a, b])),
             ("force_ratio", Some(_)) => {
                 let span = objective.window.as_ref().map(|w| w.span).unwrap_or_default();
@@ -110,7 +124,7 @@ impl Wanted {
                 return None;
             }
             ("force_target", _) => wanted.target(objective, design, diagnostics)?,
-            ("force_deviation" | "flat_ratio" | "band_ratio", None) => wanted.moving_window(design),
+            ("force_deviation" | "flat_ratio" | "band_ratio", None) => wanted.own = Some(wanted.moving_window("window", design)),
             (_, Some(_)) => {
                 let span = objective.window.as_ref().map(|w| w.span).unwrap_or_default();
                 diagnostics.push(
@@ -120,15 +134,9 @@ impl Wanted {
                 );
                 return None;
             }
-            _ if requirements.is_some_and(|r| r.force.is_some()) => wanted.moving_window(design),
             _ => {}
         }
-        if wanted.window.is_some() {
-            wanted.blocks.push(Block::Window);
-        }
-        if wanted.window.is_some_and(|w| w.iter().any(|e| matches!(e, Edge::Moves(_)))) {
-            wanted.blocks.push(Block::WindowLength);
-        }
+        wanted.required_stroke(typed.is_none(), design);
         if name == "force_at_end" || limit(requirements, "force_at_end").is_some() {
             wanted.blocks.push(Block::Forces(vec![design.load_end]));
         }
@@ -136,7 +144,7 @@ impl Wanted {
             wanted.blocks.push(Block::Slopes);
         }
         let stressed = requirements.is_some_and(|r| r.stress.is_some())
-            || ["stress_max", "safety_factor"].iter().any(|n| *n == name || limit(requirements, n).is_some());
+            || ["stress_max", "safety_factor", "stress_inner_face"].iter().any(|n| *n == name || limit(requirements, n).is_some());
         if stressed {
             wanted.blocks.push(Block::Stress);
         }
@@ -159,14 +167,38 @@ impl Wanted {
         Some(wanted)
     }
 
-    /// A window whose edges the search moves.
-    fn moving_window(&mut self, design: &Design) {
+    /// The window of the required stroke, that of the objective where it serves; `moves` says whether the search moves its edges. Then the
+    /// values of all windows.
+    fn required_stroke(&mut self, moves: bool, design: &Design) {
+        if let Some((_, nominal)) = design.requirements.as_ref().and_then(|r| r.force) {
+            // A stretch that is flat at any level, or one that is given, is not the required stroke.
+            let serves = match self.name {
+                "flat_ratio" => nominal.is_none(),
+                "force_deviation" => moves,
+                name => name == "band_ratio",
+            };
+            let title = if self.own.is_some() { "band" } else { "window" };
+            let another = if serves { self.own } else { None };
+            self.required = another.or_else(|| Some(self.moving_window(title, design)));
+        }
+        for (index, window) in self.windows.iter().enumerate() {
+            self.blocks.push(Block::Window(index));
+            if window.iter().any(|e| matches!(e, Edge::Moves(_))) {
+                self.blocks.push(Block::WindowLength(index));
+            }
+        }
+    }
+
+    /// A window whose edges the search moves, by its index.
+    fn moving_window(&mut self, title: &str, design: &Design) -> usize {
         let travel_m = design.load_end;
         let wanted_m = design.requirements.as_ref().and_then(|r| r.travel_m).unwrap_or(0.0);
-        let edge = |path: &str, nominal| Variable { path: path.to_owned(), unit: "m", nominal, lower: 0.0, upper: travel_m };
+        let edge = |end: &str, nominal| Variable { path: format!("{title}_{end}"), unit: "m", nominal, lower: 0.0, upper: travel_m };
         let start = (FIRST_START * travel_m).min(travel_m - wanted_m).max(0.0);
-        self.variables = vec![edge("window_start", start), edge("window_end", travel_m)];
-        self.window = Some([Edge::Moves(0), Edge::Moves(1)]);
+        let first = self.variables.len();
+        self.variables.extend([edge("start", start), edge("end", travel_m)]);
+        self.windows.push([Edge::Moves(first), Edge::Moves(first + 1)]);
+        self.windows.len() - 1
     }
 
     fn target(&mut self, objective: &Section<Objective>, design: &Design, diagnostics: &mut Diagnostics) -> Option<()> {
@@ -215,23 +247,29 @@ impl Wanted {
     fn pose(&self, design: &Design, search: &Search, large: bool) -> Posed {
         let requirements = design.requirements.as_ref();
         let (half_width, nominal) = requirements.and_then(|r| r.force).unwrap_or((PAPER_BAND, None));
-        let band = |level, half_width| Band { values: search.values(&Block::Window), level, half_width };
-        let required = requirements.and_then(|r| r.force).is_some();
-        let plain = |goal| Posed {
-            goal,
-            bands: if required && self.window.is_some() { vec![band(nominal, Some(half_width))] } else { Vec::new() },
-            before: None,
+        let band =
+            |window: usize, level, half_width, checks| Band { values: search.values(&Block::Window(window)), level, half_width, checks };
+        // The required stroke, where it is not that of the objective.
+        let required = || -> Vec<Band> {
+            let window = self.required.filter(|_| self.required != self.own);
+            window.map(|window| band(window, nominal, Some(half_width), vec!["force"])).into_iter().collect()
         };
-        let own = search.knobs.variables.len();
+        let plain = |goal| Posed { goal, bands: required(), before: None };
+        let with_required = |own: Band| std::iter::once(own).chain(required()).collect::<Vec<_>>();
+        let (own, window) = (search.knobs.variables.len(), self.own.unwrap_or(0));
+        let served = || if self.required.is_some() && self.required == self.own { vec!["force"] } else { Vec::new() };
         match self.name {
-            "force_deviation" => Posed { goal: task::Goal::HalfWidth, bands: vec![band(nominal, None)], before: None },
+            "force_deviation" => {
+                let bands = with_required(band(window, nominal, None, served()));
+                Posed { goal: task::Goal::HalfWidth, bands, before: None }
+            }
             "flat_ratio" | "band_ratio" => {
                 let level = if self.name == "band_ratio" { nominal } else { None };
                 let per_travel = 1.0 / design.load_end;
                 Posed {
                     goal: task::Goal::Variables(vec![(own, per_travel), (own + 1, -per_travel)]),
-                    bands: vec![band(level, Some(half_width))],
-                    before: Some((task::Goal::HalfWidth, vec![band(level, None)])),
+                    bands: with_required(band(window, level, Some(half_width), served())),
+                    before: Some((task::Goal::HalfWidth, with_required(band(window, level, None, Vec::new())))),
                 }
             }
             "force_ratio" => {
@@ -336,13 +374,31 @@ const KEPT: [&str; 10] = [
     "mass",
 ];
 
-/// Requirements that a search does not see: they are checked at its end.
-pub(crate) fn not_kept(design: &Design) -> Vec<&'static str> {
-    let limits = design.requirements.iter().flat_map(|r| &r.limits);
-    let limits = limits
-        .map(metrics::Limit::name::<CompliantMetrics>)
-        .filter(|name| !KEPT.contains(name) || (*name == "mass" && mass_kg(design).is_none()));
-    limits.chain(design.requirements.iter().flat_map(Requirements::endurance)).collect()
+/// Checks of what an objective itself makes better.
+fn sought(name: &'static str) -> Vec<&'static str> {
+    match name {
+        // The stress that a safety factor is of, and the other way round.
+        "stress_max" | "safety_factor" => vec!["stress", "stress_max", "safety_factor"],
+        name => vec![name],
+    }
+}
+
+impl Wanted {
+    /// Requirements that the search does not see: they are checked at its end.
+    fn not_kept(&self, design: &Design) -> Vec<&'static str> {
+        let Some(requirements) = &design.requirements else { return Vec::new() };
+        let lengths = self.blocks.iter().any(|b| matches!(b, Block::WindowLength(_)));
+        let seen = |name: &str| match name {
+            "mass" => mass_kg(design).is_some(),
+            "flat_force" => !self.windows.is_empty(),
+            "flat_ratio" => lengths,
+            "stress_inner_face" => allowed_stress(design).is_some_and(|(_, inner_face)| inner_face),
+            _ => KEPT.contains(&name),
+        };
+        let limits = requirements.limits.iter().map(metrics::Limit::name::<CompliantMetrics>).filter(|name| !seen(name));
+        let pads = design.making.is_drawn().then_some("pads");
+        limits.chain(requirements.endurance()).chain(pads).collect()
+    }
 }
 
 /// Two displacements of a window.
@@ -367,7 +423,7 @@ fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
     let mut add = |name: &str, key: &str, block: &Block, (lower, upper): (f64, f64), scale: f64, unit| {
         let values = search.values(block);
         if !values.is_empty() && (lower > f64::NEG_INFINITY || upper < f64::INFINITY) {
-            let in_band = matches!(block, Block::Window | Block::WindowLength);
+            let in_band = matches!(block, Block::Window(_) | Block::WindowLength(_));
             all.push(Limit {
                 name: name.to_owned(),
                 key: key.to_owned(),
@@ -383,18 +439,14 @@ fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
     };
     let least_window_m = LEAST_WINDOW * design.load_end;
     let Some(requirements) = &design.requirements else {
-        add("travel", "requirements.travel", &Block::WindowLength, (least_window_m, free.1), design.load_end, "m");
+        add("travel", "requirements.travel", &Block::WindowLength(0), (least_window_m, free.1), design.load_end, "m");
         return all;
     };
     let of = |name: &str| limit(Some(requirements), name).unwrap_or((None, None));
     let (size_m, stiffness) = (size_m(design), rigidity(design));
-    let least_stress = [
-        design.common_allowable_pa().or_else(|| (0..design.network.beams.len()).filter_map(|b| design.allowable_pa(b)).reduce(f64::min)),
-        of("stress_max").1,
-        of("safety_factor").0.and_then(|factor| Some(design.yield_pa(0)? / factor)),
-    ];
-    if let Some(allowed) = least_stress.into_iter().flatten().reduce(f64::min) {
-        add("stress", "requirements.stress", &Block::Stress, (-allowed, allowed), allowed, "Pa");
+    if let Some((allowed, inner_face)) = allowed_stress(design) {
+        let name = if inner_face { "stress, also at inner faces" } else { "stress" };
+        add(name, "requirements.stress", &Block::Stress, (-allowed, allowed), allowed, "Pa");
     }
     let slopes = (requirements.stiffness_min.max(of("stiffness_min").0.unwrap_or(free.0)), requirements.stiffness_max.unwrap_or(free.1));
     add("stiffness", "requirements.stiffness", &Block::Slopes, slopes, stiffness, "N/m");
@@ -424,18 +476,46 @@ fn limits(design: &Design, search: &Search, wanted: &Wanted) -> Vec<Limit> {
         force_n,
         "N",
     );
-    add("force", "requirements.limits.flat_force", &Block::Window, bounds("flat_force"), force_n, "N");
-    let travel_m = requirements.travel_m.filter(|_| requirements.force.is_some()).unwrap_or(0.0);
+    let flat = wanted.own.or(wanted.required).unwrap_or(0);
+    add("force", "requirements.limits.flat_force", &Block::Window(flat), bounds("flat_force"), force_n, "N");
     let flat_m = of("flat_ratio").0.unwrap_or(0.0) * design.load_end;
-    let shortest_m = travel_m.max(flat_m).max(least_window_m);
-    add("travel", "requirements.travel", &Block::WindowLength, (shortest_m, free.1), design.load_end, "m");
+    let travel_m = requirements.travel_m.filter(|_| requirements.force.is_some()).unwrap_or(0.0);
+    let moves = |window: &usize| wanted.blocks.contains(&Block::WindowLength(*window));
+    let (stroke, own) = (wanted.required.or(wanted.own), wanted.own.filter(moves));
+    for window in 0..wanted.windows.len() {
+        let is_stroke = stroke == Some(window);
+        let is_flat = own.or(wanted.required) == Some(window);
+        let shortest_m = least_window_m.max(if is_stroke { travel_m } else { 0.0 }).max(if is_flat { flat_m } else { 0.0 });
+        let (name, key) = if is_stroke { ("travel", "requirements.travel") } else { ("flat stretch", "requirements.limits.flat_ratio") };
+        add(name, key, &Block::WindowLength(window), (shortest_m, free.1), design.load_end, "m");
+    }
     all
+}
+
+/// The stress that requirements allow, Pa, and whether it keeps that at the inner faces of curved beams, too. There it is larger by a part that
+/// only the full analysis knows; the search moves the limit inwards by that, where no other limit on stress is smaller.
+fn allowed_stress(design: &Design) -> Option<(f64, bool)> {
+    let requirements = design.requirements.as_ref();
+    let of = |name: &str| limit(requirements, name).unwrap_or((None, None));
+    let straight = [
+        design.common_allowable_pa().or_else(|| (0..design.network.beams.len()).filter_map(|b| design.allowable_pa(b)).reduce(f64::min)),
+        of("stress_max").1,
+        of("safety_factor").0.and_then(|factor| Some(design.yield_pa(0)? / factor)),
+    ];
+    let straight = straight.into_iter().flatten().reduce(f64::min);
+    match (straight, of("stress_inner_face").1) {
+        (None, None) => None,
+        (Some(straight), Some(inner)) if straight < inner => Some((straight, false)),
+        (_, Some(inner)) => Some((inner, true)),
+        (Some(straight), None) => Some((straight, false)),
+    }
 }
 
 /// Names of the checks that a limit serves.
 fn serves(limit: &str) -> Vec<&'static str> {
     match limit {
         "stress" => vec!["stress", "stress_max", "safety_factor"],
+        "stress, also at inner faces" => vec!["stress", "stress_max", "safety_factor", "stress_inner_face"],
         "stiffness" => vec!["stiffness", "stiffness_min", "stiffness_max"],
         "envelope" => vec!["envelope", "envelope_margin"],
         "clearance" => vec!["clearance_min"],
@@ -444,6 +524,7 @@ fn serves(limit: &str) -> Vec<&'static str> {
         "force at the end" => vec!["force_at_end"],
         "force" => vec!["flat_force"],
         "travel" => vec!["travel", "flat_ratio"],
+        "flat stretch" => vec!["flat_ratio"],
         _ => Vec::new(),
     }
 }

@@ -177,8 +177,10 @@ fn search(asked: &Asked, shape: &Solved, room: &Room, size: &Size) -> String {
         let ends = [((1.0 - SECTION) * si).max(least).min(si), ((1.0 + SECTION) * si).min(most).max(si)];
         format!("{{ range = [{}, {}] }}", mm(ends[0]), mm(ends[1]))
     };
+    // Where a force is asked for, the stretch around it; the flattest may lie elsewhere.
+    let longest = if asked.nominal_n.is_some() { "band_ratio" } else { "flat_ratio" };
     let mut text = format!(
-        "\n[optimise]\nobjective = {{ maximise = \"flat_ratio\" }}\n[optimise.variables]\n\"design.thickness\" = {}\n\"design.depth\" = {}\n\"design.beams.*.bend\" = {{ within = {BENDS} }}\n",
+        "\n[optimise]\nobjective = {{ maximise = \"{longest}\" }}\n[optimise.variables]\n\"design.thickness\" = {}\n\"design.depth\" = {}\n\"design.beams.*.bend\" = {{ within = {BENDS} }}\n",
         range(size.thickness_m, [asked.thickness_min_m, room.thickest_m(size.scale, asked.room_m)]),
         range(size.depth_m, [asked.depth_min_m.unwrap_or(0.0), asked.depth_max_m]),
     );

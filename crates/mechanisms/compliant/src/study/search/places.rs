@@ -14,9 +14,10 @@ use crate::layout::Mirror;
 pub(super) enum Place {
     /// The stiffness at a number of even steps.
     Slope(usize),
-    /// The force at a place of the window, m, and the node of the window that it moves with.
-    Window(f64, Option<usize>),
-    WindowLength,
+    /// The force at a place of a window, by its index, at a displacement, m, and the node of the window that it moves with.
+    Window(usize, f64, Option<usize>),
+    /// Of a window, by its index.
+    WindowLength(usize),
     /// The force at a displacement, m.
     Force(f64),
     /// F(a)/F(b) − 1.
@@ -86,10 +87,10 @@ impl Filling<'_> {
     pub(super) fn add(&mut self, block: &Block) -> Result<(), Failure> {
         match block {
             Block::Slopes => (1..=CELLS).for_each(|i| self.push(self.slope(self.search.step_m(i)), Place::Slope(i))),
-            Block::Window => self.window(),
-            Block::WindowLength => {
-                let [from, to] = [0, WINDOW - 1].map(|i| self.search.place_in_window(self.x, i).0);
-                self.push(to - from, Place::WindowLength);
+            Block::Window(window) => self.window(*window),
+            Block::WindowLength(window) => {
+                let [from, to] = [0, WINDOW - 1].map(|i| self.search.place_in_window(self.x, *window, i).0);
+                self.push(to - from, Place::WindowLength(*window));
             }
             Block::Forces(at) => at.iter().for_each(|at| self.push(self.force(*at), Place::Force(*at))),
             Block::ForceRatio([a, b]) => self.push(self.force(*a) / self.force(*b) - 1.0, Place::ForceRatio([*a, *b])),
@@ -127,17 +128,17 @@ impl Filling<'_> {
         Ok(())
     }
 
-    /// Extremes of the force between the nodes of the window. Where one lies inside, its place does not matter to first order; at a node
+    /// Extremes of the force between the nodes of a window. Where one lies inside, its place does not matter to first order; at a node
     /// it moves with the window.
-    fn window(&mut self) {
-        let nodes: Vec<f64> = (0..WINDOW).map(|i| self.search.place_in_window(self.x, i).0).collect();
+    fn window(&mut self, window: usize) {
+        let nodes: Vec<f64> = (0..WINDOW).map(|i| self.search.place_in_window(self.x, window, i).0).collect();
         for (cell, ends) in nodes.windows(2).enumerate() {
             let width = ends[1] - ends[0];
             let (forces, rises) = ([0, 1].map(|i| self.force(ends[i])), [0, 1].map(|i| width * self.slope(ends[i])));
             for sign in [1.0, -1.0] {
                 let (part, value) = extreme(forces, rises, sign);
                 let end = if part <= 0.0 { Some(cell) } else { (part >= 1.0).then_some(cell + 1) };
-                self.push(value, Place::Window(ends[0] + part * width, end));
+                self.push(value, Place::Window(window, ends[0] + part * width, end));
             }
         }
     }

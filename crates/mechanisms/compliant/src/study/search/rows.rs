@@ -30,10 +30,10 @@ impl Rows<'_, '_> {
                     self.add_force(nodes[node], slope, row);
                 }
             }
-            Place::Window(at, end) => self.window(at, end, row),
-            Place::WindowLength => {
+            Place::Window(window, at, end) => self.window(window, at, end, row),
+            Place::WindowLength(window) => {
                 for (index, factor) in [(0, -1.0), (WINDOW - 1, 1.0)] {
-                    let [start, end] = self.search.place_in_window(self.x, index).1;
+                    let [start, end] = self.search.place_in_window(self.x, window, index).1;
                     for (column, by) in [start, end].into_iter().filter_map(|(c, by)| Some((c?, by))) {
                         row[column] += factor * by;
                     }
@@ -94,15 +94,15 @@ impl Rows<'_, '_> {
         self.search.knobs.add_row(own, factor * self.search.copies, row);
     }
 
-    /// The force at a place of the window, which may be a node that moves with it.
-    fn window(&self, at: f64, end: Option<usize>, row: &mut [f64]) {
-        let nodes: Vec<f64> = (0..WINDOW).map(|i| self.search.place_in_window(self.x, i).0).collect();
+    /// The force at a place of a window, which may be a node that moves with it.
+    fn window(&self, window: usize, at: f64, end: Option<usize>, row: &mut [f64]) {
+        let nodes: Vec<f64> = (0..WINDOW).map(|i| self.search.place_in_window(self.x, window, i).0).collect();
         for (node, [weight, _]) in stencil::<4>(&nodes, at) {
             self.add_force(nodes[node], weight, row);
         }
         let Some(end) = end else { return };
         let slope = self.curve.index(nodes[end]).map_or(0.0, |i| self.search.copies * self.curve.response.stiffness_n_per_m[i]);
-        for (column, by) in self.search.place_in_window(self.x, end).1.iter().filter_map(|(c, by)| Some(((*c)?, *by))) {
+        for (column, by) in self.search.place_in_window(self.x, window, end).1.iter().filter_map(|(c, by)| Some(((*c)?, *by))) {
             row[column] += slope * by;
         }
     }
