@@ -137,8 +137,8 @@ fn synthesise() -> Command {
 
 const OPTIMISE_HELP: &str = "\
 The section [optimise] of the file says what is made small or large and which numbers may change; requirements that
-the search sees are kept, others are named and checked at the end. The first search starts from the design of the file, further ones are spread
-over the ranges, later ones near the best. The same seed gives the same result.
+the search sees are kept, others are named and checked at the end. The first search starts from the design of the
+file, further ones are spread over the ranges, later ones near the best. The same seed gives the same result.
 
 Writes FILE-optimised.toml (comments kept), report.html and result.json.
 
