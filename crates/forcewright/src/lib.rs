@@ -23,6 +23,7 @@ pub mod gallery;
 mod load;
 mod optimise;
 mod pareto;
+mod settings;
 pub mod sweep;
 mod synthesise;
 mod tolerance;

@@ -29,7 +29,7 @@ use forcewright_study::optimise::{Progress, Reserve, Run, Search, Settings, agai
 use forcewright_study::task::{Limit, Task};
 
 use crate::gallery::EXAMPLES;
-use crate::pareto::whole_lists;
+use crate::settings::whole_lists;
 use crate::sweep::Snapshot;
 use crate::{Loaded, Refused, family};
 

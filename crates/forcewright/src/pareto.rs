@@ -9,7 +9,6 @@ mod pages;
 mod values;
 
 pub use values::Choice;
-pub(crate) use values::whole_lists;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
