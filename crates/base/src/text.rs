@@ -68,9 +68,8 @@ pub fn xml(text: &str) -> String {
 /// ```
 /// assert_eq!([1_u32, 2].map(|n| forcewright_base::text::counted(n, "design")), ["1 design", "2 designs"]);
 /// ```
-pub fn counted(number: impl Into<u64>, noun: &str) -> String {
-    let number = number.into();
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+pub fn counted<N: std::fmt::Display + PartialEq + From<u8>>(number: N, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == N::from(1) { "" } else { "s" })
 }
 
 #[cfg(test)]

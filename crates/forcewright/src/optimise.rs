@@ -316,15 +316,7 @@ impl Loaded {
         self.optimise_from(files, target, Beginnings { starts, seed, ..Beginnings::default() }, watch)
     }
 
-    /// The same from starts that are known otherwise.
-    pub(crate) fn optimise_from(
-        &self,
-        files: &dyn Files,
-        target: &Path,
-        from: Beginnings,
-        watch: &(dyn Fn(&Progress) -> bool + Sync),
-    ) -> Result<Optimised, Refused> {
-        let (task, diagnostics) = self.task()?;
+    fn settings(&self, from: Beginnings) -> Settings {
         let section = &self.understood.studies().optimise;
         let mut settings = Settings {
             starts: from.starts.unwrap_or(self.starts()) as usize,
@@ -337,6 +329,20 @@ impl Loaded {
         if from.as_they_are {
             settings.nlp.iteration_limit = 0;
         }
+        settings
+    }
+
+    /// The same from starts that are known otherwise.
+    pub(crate) fn optimise_from(
+        &self,
+        files: &dyn Files,
+        target: &Path,
+        from: Beginnings,
+        watch: &(dyn Fn(&Progress) -> bool + Sync),
+    ) -> Result<Optimised, Refused> {
+        let (task, diagnostics) = self.task()?;
+        let section = &self.understood.studies().optimise;
+        let settings = self.settings(from);
         let robust = Robust::asked(section);
         if robust.is_some() {
             // Whether anything scatters is found out before the work, not after.

@@ -71,8 +71,7 @@ fn finish(found: &Front, matches: &ArgMatches, file: &Path, folder: &Path) -> u8
             // The document, if one was asked for, is printed already.
             return output::write_failed(&failed, false);
         }
-        let text =
-            format!("wrote {}, front.csv, report.html, result.json in {}", counted(written as u64, "project file"), folder.display());
+        let text = format!("wrote {}, front.csv, report.html, result.json in {}", counted(written, "project file"), folder.display());
         output::narrate(&format!("{}\n", visible(&text)));
     }
     let complete = |p: &forcewright::FrontPoint| p.found.after.as_ref().is_some_and(|r| r.outcome.status.kind == StatusKind::Complete);

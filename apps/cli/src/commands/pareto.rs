@@ -76,11 +76,8 @@ fn finish(found: &Pareto, matches: &ArgMatches, file: &Path, folder: &Path) -> u
             return output::write_failed(&failed, false);
         }
         let state = if found.met() { "" } else { "; the design does not keep every limit" };
-        let text = format!(
-            "wrote {}, front.csv, report.html, result.json in {}{state}",
-            counted(written as u64, "project file"),
-            folder.display()
-        );
+        let text =
+            format!("wrote {}, front.csv, report.html, result.json in {}{state}", counted(written, "project file"), folder.display());
         output::narrate(&format!("{}\n", visible(&text)));
     }
     match (found.interrupted(), found.designs.is_empty(), found.met()) {

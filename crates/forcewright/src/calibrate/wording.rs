@@ -1,6 +1,7 @@
 //! What was found, in words.
 
 use forcewright_base::diagnostics::{Diagnostic, Span};
+use forcewright_base::text::counted;
 use forcewright_base::units::{format_number, format_si};
 use forcewright_contract::calibration::{Wanted, per};
 use forcewright_model::Axis;
@@ -332,7 +333,14 @@ impl Calibrated {
 
     /// Says what is not sound about the result.
     pub(super) fn warn(&mut self, place: Span) {
-        let mut all: Vec<(&'static str, String, &'static str)> = Vec::new();
+        for (code, message, help) in self.of_parameters().into_iter().chain(self.of_points()) {
+            self.diagnostics.push(Diagnostic::warning(code, place, message).label("this calibration").help(help));
+        }
+    }
+
+    /// What is not sound about the parameters.
+    fn of_parameters(&self) -> Vec<Doubt> {
+        let mut all: Vec<Doubt> = Vec::new();
         for message in self.not_determined() {
             all.push(("W0902", message, "take one of them out, or give it a `prior`"));
         }
@@ -376,6 +384,12 @@ impl Calibrated {
                 all.push(("W0907", message, "was the prior too sure, or does the model lack something?"));
             }
         }
+        all
+    }
+
+    /// What is not sound about the points, and about what the parameters leave.
+    fn of_points(&self) -> Vec<Doubt> {
+        let mut all: Vec<Doubt> = Vec::new();
         if self.beyond > 0 {
             let (points, lie) = if self.beyond == 1 { ("point", "lies") } else { ("points", "lie") };
             let message = format!("{} {points} that count {lie} beyond the ends of the curve, on the bench that was found", self.beyond);
@@ -420,11 +434,12 @@ impl Calibrated {
             );
             all.push(("W0909", message, "measure at more places"));
         }
-        for (code, message, help) in all {
-            self.diagnostics.push(Diagnostic::warning(code, place, message).label("this calibration").help(help));
-        }
+        all
     }
 }
+
+/// Code, message and way out of a warning.
+type Doubt = (&'static str, String, &'static str);
 
 /// What the signs of the residuals say.
 fn signs(runs: &Runs) -> String {
@@ -437,11 +452,6 @@ fn signs(runs: &Runs) -> String {
             format!("{number} of signs, {} expected, p {p}", format_number(runs.expected, 3))
         }
     }
-}
-
-/// One thing, two things.
-fn counted(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
 /// a, b and c.

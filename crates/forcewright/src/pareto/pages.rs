@@ -109,7 +109,7 @@ impl Pareto {
         format!(
             "{} in {} of {}, {} of them within the limits; it ended {end}. A search of this kind promises no optimum: more generations and another seed show what is left.",
             counted(s.evaluations, "design"),
-            counted(s.history.len() as u64, "generation"),
+            counted(s.history.len(), "generation"),
             self.asked.population,
             s.feasible
         )
