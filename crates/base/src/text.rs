@@ -68,7 +68,7 @@ pub fn xml(text: &str) -> String {
 /// ```
 /// assert_eq!([1_u32, 2].map(|n| forcewright_base::text::counted(n, "design")), ["1 design", "2 designs"]);
 /// ```
-pub fn counted<N: std::fmt::Display + PartialEq + From<u8>>(number: N, noun: &str) -> String {
+pub fn counted<N: Copy + std::fmt::Display + PartialEq + From<u8>>(number: N, noun: &str) -> String {
     format!("{number} {noun}{}", if number == N::from(1) { "" } else { "s" })
 }
 
