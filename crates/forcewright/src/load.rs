@@ -165,6 +165,9 @@ pub(crate) fn asks_for_design(project: &Project) -> Option<Span> {
 fn without_design(project: &Project) -> Option<Diagnostics> {
     let asked = asks_for_design(project)?;
     let mut diagnostics = others(&project.diagnostics.in_file_order(), "E0302");
+    if diagnostics.has_errors() {
+        return Some(diagnostics);
+    }
     diagnostics.push(
         Diagnostic::error("E0302", asked, "`design` is missing: this file says what a design must do")
             .label("asks for one")

@@ -481,7 +481,7 @@ fn a_scenario_that_cannot_be_played_is_refused() {
     };
     assert_eq!(refused(&leaf("")), ["E0302"]);
     assert_eq!(refused(&leaf(PLANE).replace("preload = \"0.001 mm\"", "")), ["E0302"]);
-    assert_eq!(refused(&leaf(PLANE).replace("[scenario.surface]", "[scenario]")), ["E0302", "E0301", "E0301"]);
+    assert_eq!(refused(&leaf(PLANE).replace("[scenario.surface]", "[scenario]")), ["E0301", "E0301"]);
     assert_eq!(refused(&leaf("profile = []")), ["E0520"]);
     assert_eq!(refused(&leaf("profile = [[\"0 mm\", \"0 mm\"]]")), ["E0520"]);
     assert_eq!(refused(&leaf("profile = [[\"1 mm\", \"0 mm\"], [\"0 mm\", \"0 mm\"]]")), ["E0520"]);
